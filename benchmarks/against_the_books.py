@@ -28,7 +28,9 @@ MEANING = {
 def errors() -> dict[tuple[str, str], float]:
     """Return the error of every method in every quantity of the first machine."""
     asked = [sys.executable, "-m", "kurbel", "accuracy", "--quick", "-f", "json"]
-    answer = json.loads(subprocess.run(asked, capture_output=True, check=True, encoding="utf-8").stdout)
+    answer = json.loads(
+        subprocess.run(asked, capture_output=True, check=True, encoding="utf-8").stdout
+    )
     table = answer["scenes"][0]["place_tables"][0]
     values = next(column["values"] for column in table["columns"] if column["id"] == "error")
     found: dict[tuple[str, str], float] = {}

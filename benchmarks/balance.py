@@ -48,7 +48,9 @@ def rolling(balance: MachineBalance) -> None:
     assert balance.M_roll_min
 
 
-def milliseconds(machine: kurbel.Machine, task: Callable[[MachineBalance], None], repeats: int = 50) -> float:
+def milliseconds(
+    machine: kurbel.Machine, task: Callable[[MachineBalance], None], repeats: int = 50
+) -> float:
     """Least time of a task, each time of a machine that is solved anew."""
     times = []
     for _ in range(repeats):

@@ -36,7 +36,16 @@ from kurbel.solver.case import Case
 from machines import STEAM_CARD
 from turning_machines import of_points
 
-POINTS = [(0, 500), (40, 1500), (40, 900), (120, 200), (200, 300), (200, 1300), (290, 100), (360, 250)]
+POINTS = [
+    (0, 500),
+    (40, 1500),
+    (40, 900),
+    (120, 200),
+    (200, 300),
+    (200, 1300),
+    (290, 100),
+    (360, 250),
+]
 ANGLES = np.arange(12) * 30.0 + 1.5
 RPM, OMEGA, MOST_TURNS, PATIENCE = 60.0, 2 * math.pi, 15, 3.0
 RELAXATIONS = (1e3, 1.0, 1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
@@ -56,7 +65,9 @@ def truth(inertia: float) -> np.ndarray:
             for (a0, m0), (a1, m1) in pairwise(POINTS)
             if a1 > a0
         ]
-        mean = sum((high - low) * (m + r * (high - low) / 2) for low, high, m, r in pieces) / (2 * mp.pi)
+        mean = sum((high - low) * (m + r * (high - low) / 2) for low, high, m, r in pieces) / (
+            2 * mp.pi
+        )
         rate = mean / (mp.mpf(inertia) / 2 * (2 * mp.pi) ** 2)
 
         def after(energy: Any, upto: Any) -> Any:
@@ -103,7 +114,13 @@ def by_scipy(method: str, tolerance: float) -> Callable[[float], np.ndarray]:
         energy = np.array([nominal])
         for _ in range(MOST_TURNS):
             out = solve_ivp(
-                slope, (0, 2 * math.pi), energy, method, np.radians([*ANGLES, 360.0]), rtol=tolerance, atol=1e-300
+                slope,
+                (0, 2 * math.pi),
+                energy,
+                method,
+                np.radians([*ANGLES, 360.0]),
+                rtol=tolerance,
+                atol=1e-300,
             )
             if not out.success or not np.isfinite(out.y).all():
                 raise ArithmeticError
@@ -161,7 +178,9 @@ def two_cylinders(slip: float) -> float:
 
     card = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
     both = tuple(
-        Cylinder(SliderCrank(0.4, 2.0), f"cylinder {i}", (card,), Masses(826.0), crank_position=90.0 * i)
+        Cylinder(
+            SliderCrank(0.4, 2.0), f"cylinder {i}", (card,), Masses(826.0), crank_position=90.0 * i
+        )
         for i in range(2)
     )
     machine = Machine(both, speed=50 / 60, flywheel=Flywheel(9000.0), load=Load(slip=slip))
@@ -176,12 +195,21 @@ def two_cylinders(slip: float) -> float:
 
 def main() -> None:
     """Print both tables."""
-    methods: dict[str, Callable[[float], np.ndarray]] = {"kurbel": by_kurbel, "RK4, 3600 steps": by_rk4(3600)}
+    methods: dict[str, Callable[[float], np.ndarray]] = {
+        "kurbel": by_kurbel,
+        "RK4, 3600 steps": by_rk4(3600),
+    }
     if importlib.util.find_spec("scipy"):
         for name in ("Radau", "BDF", "LSODA"):
-            methods |= {f"scipy {name} 1e-6": by_scipy(name, 1e-6), f"scipy {name} 1e-10": by_scipy(name, 1e-10)}
+            methods |= {
+                f"scipy {name} 1e-6": by_scipy(name, 1e-6),
+                f"scipy {name} 1e-10": by_scipy(name, 1e-10),
+            }
     print("largest relative error of the energy (time over kurbel's)\n")
-    print(f"{'relaxation, revolutions':<24}" + "".join(f"{relaxation:>18g}" for relaxation in RELAXATIONS))
+    print(
+        f"{'relaxation, revolutions':<24}"
+        + "".join(f"{relaxation:>18g}" for relaxation in RELAXATIONS)
+    )
     base: dict[float, float] = {}
     for name, solve in methods.items():
         cells = []

@@ -53,10 +53,14 @@ def model_errors(machine: Machine) -> Iterator[Difference]:
             yield Difference(quantity, cause, float(missed.max() / np.abs(truth).max()))
 
     every = machine.cylinders
-    rodless = tuple(replace(one, mechanism=SliderCrank(one.mechanism.crank, math.inf)) for one in every)
+    rodless = tuple(
+        replace(one, mechanism=SliderCrank(one.mechanism.crank, math.inf)) for one in every
+    )
     massless = tuple(replace(one, masses=None, inclination=None) for one in every)
     for cause, cylinders in (("infinite rod", rodless), ("inertia left out", massless)):
-        yield from changes(torques(machine), torques(replace(machine, cylinders=cylinders, limits=())), cause)
+        yield from changes(
+            torques(machine), torques(replace(machine, cylinders=cylinders, limits=())), cause
+        )
 
 
 def torques(machine: Machine) -> dict[str, float]:
@@ -71,7 +75,7 @@ def data_errors(machine: Machine) -> Iterator[Difference]:
     The friction is left as it is. Noise: the standard deviation over 20 draws, the same in every run.
     """
     case, phi = Case(machine), np.arange(0.0, 360.0 * machine.revolutions, STEP)
-    places = [phi - one.crank_position for one in machine.cylinders]
+    places = [phi - cylinder.crank_position for cylinder in machine.cylinders]
     states = [forces.at(place) for forces, place in zip(case.cylinders, places)]
     first, torque, crank = states[0], case.flywheel.at(phi).M, machine.cylinders[0].mechanism.crank
 
@@ -86,13 +90,20 @@ def data_errors(machine: Machine) -> Iterator[Difference]:
 
     whole = answers([0 * phi for _ in states])
     late = [forces.at(place - STEP).P_gas for forces, place in zip(case.cylinders, places)]
-    yield from changes(whole, answers([b - a.P_gas for a, b in zip(states, late)]), "dead centre 0.1° late")
+    yield from changes(
+        whole, answers([b - a.P_gas for a, b in zip(states, late)]), "dead centre 0.1° late"
+    )
     draws = []
     for seed in range(20):
         random = np.random.default_rng(seed)
-        draws.append(answers([random.normal(0.0, 0.005 * np.abs(one.P_gas).max(), len(phi)) for one in states]))
+        draws.append(
+            answers(
+                [random.normal(0.0, 0.005 * np.abs(one.P_gas).max(), len(phi)) for one in states]
+            )
+        )
     noisy = {
-        quantity: value + math.sqrt(statistics.fmean((draw[quantity] - value) ** 2 for draw in draws))
+        quantity: value
+        + math.sqrt(statistics.fmean((draw[quantity] - value) ** 2 for draw in draws))
         for quantity, value in whole.items()
     }
     yield from changes(whole, noisy, "noise 0.5% of the gas force")

@@ -25,7 +25,13 @@ def random_machine(random: np.random.Generator) -> MachineTurning:
         levels = random.uniform(-0.5, 10, 8) * 1e5
         card = Card.from_keys(
             unit=(1, 1),
-            expansion=[(0, levels[0]), (z[0], levels[1]), (z[0], levels[2]), (z[1], levels[3]), (1, levels[4])],
+            expansion=[
+                (0, levels[0]),
+                (z[0], levels[1]),
+                (z[0], levels[2]),
+                (z[1], levels[3]),
+                (1, levels[4]),
+            ],
             compression=[(1, levels[5]), (z[2], levels[6]), (0, levels[7])],
         )
         crank = 10 ** random.uniform(-2, 0)
@@ -52,11 +58,15 @@ def missed(machine: MachineTurning, samples: int = 200) -> int:
     changes = np.flatnonzero(values[:-1] * values[1:] < 0)
     crossings = np.array(machine.phi_crossing)
     near = [
-        ((crossings >= degrees.ravel()[i] - 1e-9) & (crossings <= degrees.ravel()[i + 1] + 1e-9)).any()
+        (
+            (crossings >= degrees.ravel()[i] - 1e-9) & (crossings <= degrees.ravel()[i + 1] + 1e-9)
+        ).any()
         for i in changes
         if max(abs(values[i]), abs(values[i + 1])) > 1e-13 * size
     ]
-    beaten = (total.max() > machine.M_max.value + 1e-12 * size) + (total.min() < machine.M_min.value - 1e-12 * size)
+    beaten = (total.max() > machine.M_max.value + 1e-12 * size) + (
+        total.min() < machine.M_min.value - 1e-12 * size
+    )
     return len(near) - int(sum(near)) + int(beaten)
 
 

@@ -48,11 +48,13 @@ def main() -> None:
     """Print the table."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100_000
     angles = [360 * index / count for index in range(count)]
-    trace = "".join(f"{angle:.6f},{5 + 4 * math.cos(math.radians(angle)):.6f}\n" for angle in angles)
-    points = "".join(f"    - [{angle:.6f}, {100 + index % 7}]\n" for index, angle in enumerate(angles))
-    effort = (
-        f"speed: 60 rpm\neffort:\n  unit: N m\n  points:\n{points}    - [360, 100]\nflywheel: {{inertia: 10 kg m2}}\n"
+    trace = "".join(
+        f"{angle:.6f},{5 + 4 * math.cos(math.radians(angle)):.6f}\n" for angle in angles
     )
+    points = "".join(
+        f"    - [{angle:.6f}, {100 + index % 7}]\n" for index, angle in enumerate(angles)
+    )
+    effort = f"speed: 60 rpm\neffort:\n  unit: N m\n  points:\n{points}    - [360, 100]\nflywheel: {{inertia: 10 kg m2}}\n"
     turning = loads(effort)
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "p.csv").write_text(trace, encoding="utf-8")
@@ -68,7 +70,9 @@ def main() -> None:
         print(f"{count} numbers")
         times = {name: seconds(task) for name, task in rows.items()}
     for name, taken in times.items():
-        print(f"{name:<32}{taken * 1e3:>10.1f} ms{taken / times['naive loop over the trace']:>10.2f} x naive")
+        print(
+            f"{name:<32}{taken * 1e3:>10.1f} ms{taken / times['naive loop over the trace']:>10.2f} x naive"
+        )
 
 
 if __name__ == "__main__":

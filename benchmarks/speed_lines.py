@@ -36,24 +36,34 @@ Function = Callable[[Array, Array], Array]
 def turning_inertia(cylinder: Cylinder) -> Any:
     """Return what turns with the crank pin of a connecting rod, in kg m²."""
     rod = cylinder.masses.connecting_rod if cylinder.masses else None
-    return mpf(rod.mass) * (1 - mpf(rod.share)) * mpf(cylinder.mechanism.crank) ** 2 if rod else mpf(0)
+    return (
+        mpf(rod.mass) * (1 - mpf(rod.share)) * mpf(cylinder.mechanism.crank) ** 2 if rod else mpf(0)
+    )
 
 
 def speed_line(machine: Machine) -> dict[float, Any]:
     """Return ω in rad/s by the angle in degrees, at 30°, 60°, … of the cycle."""
     whole, load, wheel = TextbookMachine(machine, machine.cylinders), machine.load, machine.flywheel
-    omega, rigid = 2 * mp.pi * mpf(machine.speed), mpf(wheel.inertia) + sum(map(turning_inertia, machine.cylinders))
+    omega, rigid = (
+        2 * mp.pi * mpf(machine.speed),
+        mpf(wheel.inertia) + sum(map(turning_inertia, machine.cylinders)),
+    )
 
     def drive(degrees: Any, within: Any) -> Any:
         """M without inertia in N m."""
         total = mpf(0)
         for one, place in whole.cylinders:
             motion = one.motion.at(degrees - place)
-            total += one.at(degrees - place, within - place).M + one.mass * omega**2 * motion.slope * motion.curvature
+            total += (
+                one.at(degrees - place, within - place).M
+                + one.mass * omega**2 * motion.slope * motion.curvature
+            )
         return total
 
     def inertia(degrees: Any, _: Any) -> Any:
-        slopes = [(one.mass, one.motion.at(degrees - place).slope) for one, place in whole.cylinders]
+        slopes = [
+            (one.mass, one.motion.at(degrees - place).slope) for one, place in whole.cylinders
+        ]
         return rigid + sum(mass * slope**2 for mass, slope in slopes)
 
     work = integrals(np.frompyfunc(drive, 2, 1), whole.edges, STEPS).sum()
@@ -63,9 +73,14 @@ def speed_line(machine: Machine) -> dict[float, Any]:
         if load.slip is not None:
             steepness = abs(mean) / load.slip / omega
             return mean + steepness * (speed - omega), steepness + 0 * speed
-        return mean * (speed / omega) ** load.power, mean * load.power / omega * (speed / omega) ** (load.power - 1)
+        return mean * (speed / omega) ** load.power, mean * load.power / omega * (
+            speed / omega
+        ) ** (load.power - 1)
 
-    both = [np.frompyfunc(lambda *at, one=one: one(*map(mp.degrees, at)), 2, 1) for one in (drive, inertia)]
+    both = [
+        np.frompyfunc(lambda *at, one=one: one(*map(mp.degrees, at)), 2, 1)
+        for one in (drive, inertia)
+    ]
     precise = Motor(*both, lambda speed: torque(speed, mean, omega), omega)
     rough = Motor(
         *(lambda phi, at, one=one: np.asarray(one(MPF(phi), at), dtype=float) for one in both),
@@ -73,7 +88,7 @@ def speed_line(machine: Machine) -> dict[float, Any]:
         float(omega),
     )
     degrees = range(30, 360 * machine.revolutions + 1, 30)
-    edges = merged(RADIANS(np.append(whole.edges, [mpf(one) for one in degrees])))
+    edges = merged(RADIANS(np.append(whole.edges, [mpf(degree) for degree in degrees])))
     kept, found = np.asarray(edges[1:], dtype=float), np.full(len(edges) - 1, math.inf)
     while len(edges) < 1000:
         floats, before = np.asarray(edges, dtype=float), found
@@ -83,7 +98,9 @@ def speed_line(machine: Machine) -> dict[float, Any]:
             break
         edges = np.sort([*edges, *((edges[1:] + edges[:-1]) / 2)[long]])
     omegas, _ = periodic(precise, edges, 20, precise=True)
-    return {one: omegas[np.abs(edges[1:] - mp.radians(mpf(one))).argmin()] for one in degrees}
+    return {
+        degree: omegas[np.abs(edges[1:] - mp.radians(mpf(degree))).argmin()] for degree in degrees
+    }
 
 
 def spread(edges: Array, shares: Array) -> Array:
@@ -131,7 +148,11 @@ def periodic(motor: Motor, edges: Array, count: int, precise: bool) -> tuple[Arr
     phi, widths = spread(edges, nodes), np.diff(edges)[:, None]
     drive, inertia = motor.drive(phi, within(edges)), motor.inertia(phi, within(edges))
     kinetic = nominal = inertia * motor.omega**2 / 2
-    lengths, rigid, size = np.asarray(widths, dtype=float), np.asarray(nominal, dtype=float), math.inf
+    lengths, rigid, size = (
+        np.asarray(widths, dtype=float),
+        np.asarray(nominal, dtype=float),
+        math.inf,
+    )
     for _ in range(80):
         omega = sqrt(2 * kinetic / inertia)
         load, slope = motor.load(omega)
@@ -139,7 +160,9 @@ def periodic(motor: Motor, edges: Array, count: int, precise: bool) -> tuple[Arr
         missing = np.asarray(before + widths * (rate @ matrix.T) - kinetic, dtype=float)
         stiffness = lengths * np.asarray(slope / (inertia * omega), dtype=float)
         system = np.eye(count) + np.asarray(matrix, dtype=float) * stiffness[:, None, :]
-        own, passed = np.moveaxis(np.linalg.solve(system, np.stack((missing, np.ones_like(missing)), axis=2)), 2, 0)
+        own, passed = np.moveaxis(
+            np.linalg.solve(system, np.stack((missing, np.ones_like(missing)), axis=2)), 2, 0
+        )
         step = own + passed * _arriving(own[:, -1], passed[:, -1])[:, None]
         step *= min(1.0, 0.5 / max(1e-9, float((-step / np.asarray(kinetic, dtype=float)).max())))
         kinetic, last, size = kinetic + step, size, float(np.abs(step / rigid).max())
@@ -148,7 +171,9 @@ def periodic(motor: Motor, edges: Array, count: int, precise: bool) -> tuple[Arr
         if size < rounding or (size < 1e-9 and size > last / 2):
             tail = (
                 np.asarray(rate, dtype=float)
-                @ np.linalg.inv(chebyshev.chebvander(np.asarray(2 * nodes - 1, dtype=float), count - 1)).T
+                @ np.linalg.inv(
+                    chebyshev.chebvander(np.asarray(2 * nodes - 1, dtype=float), count - 1)
+                ).T
             )
             least = np.asarray(kinetic, dtype=float).min(axis=1)
             rough = np.abs(lengths * tail[:, -2:]).max(axis=1) > 1e-14 * least
@@ -180,8 +205,12 @@ def main() -> None:
                 begin = time.perf_counter()
                 own = Case(machine).flywheel.at([at]).omega[0]
                 spent, truth = 1e3 * (time.perf_counter() - begin), line[int(at)]
-                off, missed = (float(abs(one / truth - 1)) for one in (mpf(case.expected), mpf(float(own))))
-                print(f"{case.case:<34}{at:>5g}  {mp.nstr(truth, 30):<34}{off:>14.0e}{missed:>10.0e}{spent:>8.1f}")
+                off, missed = (
+                    float(abs(one / truth - 1)) for one in (mpf(case.expected), mpf(float(own)))
+                )
+                print(
+                    f"{case.case:<34}{at:>5g}  {mp.nstr(truth, 30):<34}{off:>14.0e}{missed:>10.0e}{spent:>8.1f}"
+                )
 
 
 if __name__ == "__main__":

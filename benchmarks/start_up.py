@@ -29,13 +29,20 @@ COMMANDS = {
     "kurbel balance (V8)": [BIN / "kurbel", "balance", CONFIGS / "v8-cross-plane.yaml"],
     "kurbel plot": [BIN / "kurbel", "plot", CONFIGS / "waterworks.yaml"],
 }
-BUDGET = {"kurbel --help": 1.0, "kurbel table": 1.8, "kurbel forces -f csv": 2.0, "kurbel flywheel": 2.5}
+BUDGET = {
+    "kurbel --help": 1.0,
+    "kurbel table": 1.8,
+    "kurbel forces -f csv": 2.0,
+    "kurbel flywheel": 2.5,
+}
 
 
 def measure(rounds: int) -> dict[str, list[float]]:
     """Return the seconds of each round by command."""
     # without compiled modules every start would compile kurbel anew, which no installation does
-    environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    environment = {
+        key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"
+    }
     times: dict[str, list[float]] = {name: [] for name in COMMANDS}
     for number in range(rounds + 1):
         for name, command in COMMANDS.items():
@@ -53,7 +60,10 @@ def main() -> None:
     print(f"{'':<24}{'median':>16}{'least':>16}")
     print(f"{'command':<24}{'ms':>8}{'ratio':>8}{'ms':>8}{'ratio':>8}{'budget':>8}")
     for name, seconds in times.items():
-        taken = "".join(f"{of(seconds) * 1e3:>8.1f}{of(seconds) / of(base):>8.2f}" for of in (statistics.median, min))
+        taken = "".join(
+            f"{of(seconds) * 1e3:>8.1f}{of(seconds) / of(base):>8.2f}"
+            for of in (statistics.median, min)
+        )
         budget = f"{BUDGET[name]:.2f}" if name in BUDGET else ""
         print(f"{name:<24}{taken}{budget:>8}")
 

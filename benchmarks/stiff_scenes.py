@@ -24,7 +24,12 @@ def numbers(values: object) -> str:
 
 def columns(speed: SpeedOfShaft) -> list[str]:
     """Return the columns of a reference."""
-    return [numbers(speed.omega), numbers([speed.delta]), numbers([speed.omega_max]), numbers(speed.M_K)]
+    return [
+        numbers(speed.omega),
+        numbers([speed.delta]),
+        numbers([speed.omega_max]),
+        numbers(speed.M_K),
+    ]
 
 
 def main() -> None:

@@ -23,15 +23,22 @@ import numpy as np
 from kurbel.designs.answers import Answer, answered_alone, answers_of, requested_answers
 from kurbel.designs.binding import Batch, Binder
 from kurbel.designs.plan import read_axis
-from kurbel.designs.sweep import Spec, Sweep, rows_of
+from kurbel.designs.sweep import Spec, Sweep, computed_rows
 from kurbel.machine_file import source
 from kurbel.machine_file.reader import read_machine
 from kurbel.render import Look
-from kurbel.render.sweep_rows import Titles, lines_of
+from kurbel.render.sweep_rows import Titles, head_and_row_lines
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = "waterworks"
-OTHERS = ("locomotive", "gas-engine", "offset-engine", "steam-ideal", "diesel-two-stroke", "gas-engine-double-acting")
+OTHERS = (
+    "locomotive",
+    "gas-engine",
+    "offset-engine",
+    "steam-ideal",
+    "diesel-two-stroke",
+    "gas-engine-double-acting",
+)
 """Machines whose rods and speeds are varied, too."""
 CHAPTERS = (
     ("waterworks-two-cranks", ("dE",)),
@@ -39,7 +46,17 @@ CHAPTERS = (
     ("four-in-line", ("F_free_max", "M_free_max", "counterweight_best")),
     ("gas-engine", ("load_max", "unloaded_arc")),
     ("gas-engine", ("sigma_pin_max",)),
-    ("triplex-pump", ("flow_mean", "flow_max", "flow_min", "volume_fluctuation", "vessel_swing", "suction_lift_max")),
+    (
+        "triplex-pump",
+        (
+            "flow_mean",
+            "flow_max",
+            "flow_min",
+            "volume_fluctuation",
+            "vessel_swing",
+            "suction_lift_max",
+        ),
+    ),
 )
 """Key values of the whole machine."""
 DESIGNS, SINGLE, RUNS = 1000, 10, 5
@@ -90,21 +107,31 @@ def main() -> None:
     print(f"np.sin of a million doubles: {seconds(lambda: np.sin(angles)) * 1e3:.1f} ms")
     machines = designs(WATERWORKS, DESIGNS)
     every = list(requested_answers(machines[0].one(0), ()))
-    motion = [one for one in every if one.quantity.id in ("c_m", "c_max", "b_max", "b_min", "phi_b_zero")]
+    motion = [
+        one for one in every if one.quantity.id in ("c_m", "c_max", "b_max", "b_min", "phi_b_zero")
+    ]
     beside_alone(f"key values of forces: {WATERWORKS}", machines, every)
     beside_alone(f"motion alone: {WATERWORKS}", machines, motion)
     for name in OTHERS:
         batches = designs(name, DESIGNS)
-        beside_alone(f"key values of forces: {name}", batches, list(requested_answers(batches[0].one(0), ())))
+        beside_alone(
+            f"key values of forces: {name}", batches, list(requested_answers(batches[0].one(0), ()))
+        )
     for name, columns in CHAPTERS:
         batches = at_speeds(name, DESIGNS)
-        beside_alone(f"{', '.join(columns)}: {name}", batches, list(requested_answers(batches[0].one(0), columns)))
+        beside_alone(
+            f"{', '.join(columns)}: {name}",
+            batches,
+            list(requested_answers(batches[0].one(0), columns)),
+        )
     report("binding to the file", seconds(lambda: designs(WATERWORKS, DESIGNS)), DESIGNS)
     axes = (read_axis("rod_ratio=uniform(3, 6)"), read_axis("speed=uniform(40, 60 rpm)"))
     begin = time.process_time()
     sweep = Sweep(Spec(source.read(CONFIGS / f"{WATERWORKS}.yaml"), axes, sample=rows))
-    titles = Titles(tuple((one.id, one.unit) for one in sweep.heads), sweep.texts)
-    size = sum(map(len, map(lines_of(titles, Look("csv"))[1], rows_of(sweep, range(rows)))))
+    titles = Titles(tuple((head.id, head.unit) for head in sweep.heads), sweep.texts)
+    size = sum(
+        map(len, map(head_and_row_lines(titles, Look("csv"))[1], computed_rows(sweep, range(rows))))
+    )
     report(f"{rows} rows with {len(sweep.heads)} columns as csv", time.process_time() - begin, rows)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(f"{size / 1e6:.1f} MB written, {memory:.0f} MB of memory at most")

@@ -39,7 +39,10 @@ def seconds(work: Callable[[], object]) -> float:
 def whole(masses: int = 30, orders: int = 48, speeds: int = 200) -> Vibration:
     """A chain with damping in every piece, driven at six masses."""
     draw = np.random.default_rng(1)
-    names = (ShaftMass(f"mass {i}", float(j), damping=2.0) for i, j in enumerate(draw.uniform(0.5, 2, masses)))
+    names = (
+        ShaftMass(f"mass {i}", float(j), damping=2.0)
+        for i, j in enumerate(draw.uniform(0.5, 2, masses))
+    )
     pieces = (ShaftPiece(float(k), 1.0, 0.01) for k in draw.uniform(1e5, 1e6, masses - 1))
     line = ShaftLine(tuple(names), tuple(pieces))
     gas = np.zeros((masses, orders), dtype=complex)
@@ -70,7 +73,7 @@ def main() -> None:
         errors = np.zeros(2)
         for seed in range(4):
             chain = at_random(12, spread, "", seed)
-            exact = np.array([float(one) for one in eigenvalues(chain)])[1:]
+            exact = np.array([float(eigenvalue) for eigenvalue in eigenvalues(chain)])[1:]
             for index, found in enumerate((Modes(chain).omegas, plain_eigenvalues(chain))):
                 errors[index] = max(errors[index], np.abs(found[1:] / exact - 1).max())
         print(f"{2 * spread:<22}{errors[0]:>10.0e}{errors[1]:>10.0e}")

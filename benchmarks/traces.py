@@ -37,7 +37,11 @@ def measured(task: str, folder: Path) -> tuple[float, float]:
     """Seconds and MiB of a task, the best of three."""
     runs = [
         subprocess.run(
-            [sys.executable, "-c", MEASURED.format(task=task)], cwd=folder, capture_output=True, text=True, check=True
+            [sys.executable, "-c", MEASURED.format(task=task)],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=True,
         ).stdout.split()
         for _ in range(3)
     ]
@@ -58,7 +62,10 @@ def tables() -> dict[str, tuple[np.ndarray, str]]:
         "7,200 points": (np.column_stack((np.arange(7200) * 0.1, pressures(7200, 1)[0])), ""),
         "60 x 3,600, in columns": (np.column_stack((turns, sixty.T)), ", pressure_columns: 2-61"),
         "60 x 3,600, one below another": (np.column_stack((np.tile(turns, 60), sixty.ravel())), ""),
-        "1e6 points, 278 cycles": (np.column_stack((np.tile(turns, 278), pressures(3600, 278).ravel())), ""),
+        "1e6 points, 278 cycles": (
+            np.column_stack((np.tile(turns, 278), pressures(3600, 278).ravel())),
+            "",
+        ),
     }
 
 
@@ -67,12 +74,16 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         base, size = measured(NUMPY, folder)
-        print(f"{'':<32}{'read':>10}{'p_i, COV':>12}{'memory':>12}\n{'import numpy':<32}{base * 1e3:>7.0f} ms")
+        print(
+            f"{'':<32}{'read':>10}{'p_i, COV':>12}{'memory':>12}\n{'import numpy':<32}{base * 1e3:>7.0f} ms"
+        )
         for what, (table, keys) in tables().items():
             np.savetxt(folder / "p.csv", table, delimiter=",", fmt="%.4f")
             (folder / "m.yaml").write_text(TRACED.format(keys=keys), encoding="utf-8")
             read, spread = measured(READ, folder), measured(SPREAD, folder)
-            ratios = f"{read[0] / base:>8.1f} x{spread[0] / base:>10.1f} x{spread[1] - size:>8.0f} MiB"
+            ratios = (
+                f"{read[0] / base:>8.1f} x{spread[0] / base:>10.1f} x{spread[1] - size:>8.0f} MiB"
+            )
             print(f"{what:<32}{ratios}")
 
 

@@ -37,7 +37,9 @@ def errors(report: Report, wanted: Callable[[tuple[str, ...]], bool]) -> list[fl
         for part in report.parts
         for table in part.place_tables
         if table.id == "numerical_error"
-        for names, error in zip(table.names, next(c for c in table.columns if c.id == "error").values)
+        for names, error in zip(
+            table.names, next(c for c in table.columns if c.id == "error").values
+        )
         if error and wanted(names)
     ]
 
@@ -54,7 +56,9 @@ def worst(report: Report) -> str:
         for part in report.parts
         for table in part.place_tables
         if table.id == "numerical_error"
-        for names, error in zip(table.names, next(c for c in table.columns if c.id == "error").values)
+        for names, error in zip(
+            table.names, next(c for c in table.columns if c.id == "error").values
+        )
         if names[1] == "kurbel" and error is not None
     ]
     error, quantity, scene = max(found)
@@ -64,7 +68,9 @@ def worst(report: Report) -> str:
 def saved(report: Report) -> str:
     """Return how many functions of the solver run for the whole machine and for its motion alone, and for how long."""
     table = next(table for table in report.parts[0].place_tables if table.id == "leaving_out")
-    stages, times = (next(c.values for c in table.columns if c.id == id) for id in ("stages", "least"))
+    stages, times = (
+        next(c.values for c in table.columns if c.id == id) for id in ("stages", "least")
+    )
     (whole, _), *_, (motion, _), (positions, _) = each = list(zip(stages, times))
     spans = " and ".join(f"{each[place][1]:.2g} ms" for place in (0, -2))
     return f"""all results of the whole machine need {whole} functions
@@ -75,9 +81,9 @@ def explanation(report: Report) -> str:
     """Return which error an engineer should worry about."""
     engine = report._replace(parts=report.parts[:1])
     machine = first_machine()
-    data = [one.error for one in data_errors(machine)]
+    data = [data_error.error for data_error in data_errors(machine)]
     model, rough = (
-        [one.error for one in model_errors(machine) if one.cause == cause]
+        [model_error.error for model_error in model_errors(machine) if model_error.cause == cause]
         for cause in ("first-order formulas", "infinite rod")
     )
     hand = errors(engine, lambda names: names[1] in EQUIDISTANT and names[2] == "36")

@@ -13,7 +13,7 @@ import click
 from kurbel.cli import COMMANDS, kurbel
 from kurbel.declared.forms.structures import Inline, Keyed, RecordForm, records
 from kurbel.declared.forms.values import Form
-from kurbel.declared.keys import Key, Keys, Record, without
+from kurbel.declared.keys import Key, Keys, Record, absent_text
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, range_of, unit_names
 from kurbel.machine import Machine
@@ -41,7 +41,7 @@ def units() -> str:
 
 def columns() -> str:
     """Return the quantities over the crank angle, of every command."""
-    printed = [one for one in every_quantity().all_columns if one.commands]
+    printed = [column for column in every_quantity().all_columns if column.commands]
     return _page("Columns", _COLUMNS, *_by_command(printed), *_others())
 
 
@@ -110,7 +110,7 @@ def _quantities(declared: Iterable[Quantity]) -> str:
 
 def _units_of(kind: str) -> str:
     """Return the units of a kind in every system, once where all of them have the same; a middle dot parts them."""
-    each = [_unit(one[kind]) for one in SYSTEMS.values()]
+    each = [_unit(system[kind]) for system in SYSTEMS.values()]
     return " · ".join(each) if len(set(each)) > 1 else each[0]
 
 
@@ -123,14 +123,20 @@ def _units() -> Iterator[str]:
         "Every key takes units of one kind. Products and powers are written `N m` or `N*m`, `kg m2`, `kg m^2` or "
         "`kg m²`. `kg` is a mass; a force is `kgf` or `kp`."
     )
-    rows = ((kind.replace("_", " "), ", ".join(f"`{name}`" for name in unit_names(kind))) for kind in kinds())
+    rows = (
+        (kind.replace("_", " "), ", ".join(f"`{name}`" for name in unit_names(kind)))
+        for kind in kinds()
+    )
     yield _table(("kind", "units"), rows)
 
 
 def _sizes() -> Iterator[str]:
     yield "## Sizes\n\nA value beyond these is an error; the sign is free. [Limits of size](../size.md) has times."
     rows = [(kind.replace("_", " "), range_of(kind)) for kind in KINDS]
-    rows += [("points of one diagram or trace", f"up to {MOST_POINTS}"), ("items of one list", f"up to {MOST_ITEMS}")]
+    rows += [
+        ("points of one diagram or trace", f"up to {MOST_POINTS}"),
+        ("items of one list", f"up to {MOST_ITEMS}"),
+    ]
     yield _table(("kind", "size"), rows)
 
 
@@ -173,11 +179,11 @@ def _with_cases(keys: Keys) -> Iterator[tuple[str, Key]]:
 def _cases(form: Form) -> Iterator[tuple[str, Key]]:
     if isinstance(form, Keyed):
         yield from form.single.items()
-    yield from (one for word, inner in form.parts if not word for one in _cases(inner))
+    yield from (case for word, inner in form.parts if not word for case in _cases(inner))
 
 
 def _absent(keys: Keys, word: str) -> str:
-    return without(keys, word) if word in keys else ""
+    return absent_text(keys, word) if word in keys else ""
 
 
 def _command(name: str) -> str:
@@ -189,7 +195,11 @@ def _command(name: str) -> str:
     usage = command.get_usage(context).removeprefix("Usage: ")
     text = _prose(command.help or "")
     # not every version of click tells arguments, which the usage names
-    shown = [one for one in command.get_params(context) if isinstance(one, click.Option)]
+    shown = [
+        get_param
+        for get_param in command.get_params(context)
+        if isinstance(get_param, click.Option)
+    ]
     rows = [row for one in shown if (row := one.get_help_record(context))]
     options = _table(("option", "meaning"), ((f"`{option}`", meaning) for option, meaning in rows))
     status = f"{command.epilog}" if command.epilog else ""
@@ -199,4 +209,6 @@ def _command(name: str) -> str:
 def _prose(text: str) -> str:
     """Return the help of a command as Markdown: what click keeps as it is becomes a block of text."""
     parts = re.split(r"\n\n", re.sub(r"^ {4}", "", text, flags=re.M))
-    return "\n\n".join(f"```text\n{p[2:].strip(chr(10))}\n```" if p.startswith("\b\n") else p for p in parts)
+    return "\n\n".join(
+        f"```text\n{p[2:].strip(chr(10))}\n```" if p.startswith("\b\n") else p for p in parts
+    )

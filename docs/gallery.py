@@ -71,7 +71,7 @@ MOVING = ("scotch-yoke-pump", "shaper", "crank-rocker", "coupled-axle", "yoke-fr
 """The other mechanisms of the book."""
 SET = {"effort-cranks": "efficiency=0.9", "piston-force-crank": "efficiency=0.9"}
 """Picture -> what is set for it: without losses no line differs by them."""
-_DECLARED = {one.id: one for one in PICTURES}
+_DECLARED = {picture.id: picture for picture in PICTURES}
 
 
 def shown() -> list[tuple[str, str]]:

@@ -14,7 +14,7 @@ from rich.text import Text
 
 from kurbel.render import Look
 from kurbel.render.output import STYLES
-from kurbel.render.page import page
+from kurbel.render.page import page_lines
 from kurbel.report.zusammenstellung import zusammenstellung
 
 WIDTH = 120
@@ -22,11 +22,15 @@ WIDTH = 120
 
 def main() -> None:
     """Write the picture to standard output."""
-    console = Console(record=True, width=WIDTH, file=io.StringIO(), force_terminal=True, highlight=False)
+    console = Console(
+        record=True, width=WIDTH, file=io.StringIO(), force_terminal=True, highlight=False
+    )
     report = zusammenstellung((5.0, 4.5, 4.0), ("b", "c"), tuple(range(0, 181, 10)), "book", False)
     console.print(Text("$ kurbel table", "bold"))
-    for line in page(report, Look(width=WIDTH)):
-        console.print(Text.assemble(*((piece.text, STYLES[piece.role]) for piece in line)), soft_wrap=True)
+    for line in page_lines(report, Look(width=WIDTH)):
+        console.print(
+            Text.assemble(*((piece.text, STYLES[piece.role]) for piece in line)), soft_wrap=True
+        )
     svg = console.export_svg(title="kurbel table", theme=MONOKAI, unique_id="kurbel")
     sys.stdout.buffer.write(svg.encode())
 

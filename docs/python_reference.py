@@ -74,7 +74,7 @@ def _signature(name: str, thing: Any) -> str:
         found = inspect.signature(thing)
     except ValueError:
         return ""
-    arguments = [_argument(one) for one in found.parameters.values()]
+    arguments = [_argument(parameter) for parameter in found.parameters.values()]
     if not arguments:
         return ""
     returned = found.return_annotation
@@ -85,7 +85,7 @@ def _signature(name: str, thing: Any) -> str:
     )
     line = f"{name}({', '.join(arguments)}){end}"
     if len(line) > 76:
-        line = f"{name}(\n" + "".join(f"    {one},\n" for one in arguments) + f"){end}"
+        line = f"{name}(\n" + "".join(f"    {argument},\n" for argument in arguments) + f"){end}"
     return f"```text\n{line}\n```\n\n"
 
 
@@ -111,15 +111,25 @@ def _escaped(text: str) -> str:
 
 def _members(of: type, names: Any) -> str:
     """Return a table of attributes and methods, with the first paragraph of each docstring."""
-    rows = (f"| `{_call(name, inspect.getattr_static(of, name))}` | {_first(of, name)} |" for name in names)
+    rows = (
+        f"| `{_call(name, inspect.getattr_static(of, name))}` | {_first(of, name)} |"
+        for name in names
+    )
     return "\n".join(["| | |", "| --- | --- |", *rows])
 
 
 def _call(name: str, member: Any) -> str:
     if not inspect.isfunction(member):
         return f".{name}"
-    parameters = [one for one in inspect.signature(member).parameters.values() if one.name != "self"]
-    arguments = [("*" if one.kind is inspect.Parameter.VAR_POSITIONAL else "") + one.name for one in parameters]
+    parameters = [
+        parameter
+        for parameter in inspect.signature(member).parameters.values()
+        if parameter.name != "self"
+    ]
+    arguments = [
+        ("*" if parameter.kind is inspect.Parameter.VAR_POSITIONAL else "") + parameter.name
+        for parameter in parameters
+    ]
     return f".{name}({', '.join(arguments)})"
 
 

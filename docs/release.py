@@ -28,7 +28,9 @@ def _dated(text: str, version: str) -> str:
     """Return the changelog with its unreleased part under this version and today, and a new empty one above."""
     if not re.search(r"(?m)^## \[Unreleased\]\n+(?!## )", text):
         sys.exit("CHANGELOG.md: nothing stands under [Unreleased]")
-    return text.replace("## [Unreleased]", f"## [Unreleased]\n\n## [{version}] - {date.today().isoformat()}", 1)
+    return text.replace(
+        "## [Unreleased]", f"## [Unreleased]\n\n## [{version}] - {date.today().isoformat()}", 1
+    )
 
 
 CHANGED: dict[str, Callable[[str, str], str]] = {
@@ -42,13 +44,22 @@ CHANGED: dict[str, Callable[[str, str], str]] = {
 def main() -> None:
     given = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     given.add_argument("version", help="such as 0.2.0")
-    given.add_argument("--dry-run", action="store_true", help="change nothing, say what would be done")
+    given.add_argument(
+        "--dry-run", action="store_true", help="change nothing, say what would be done"
+    )
     asked = given.parse_args()
     if not re.fullmatch(r"\d+\.\d+\.\d+", asked.version):
         sys.exit(f"'{asked.version}' is no version: write three numbers, such as 0.2.0")
-    if subprocess.run(["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, check=True).stdout.strip():
-        sys.exit("there are changes that are not committed: a release is made from a clean checkout")
-    texts = {name: change((ROOT / name).read_text("utf-8"), asked.version) for name, change in CHANGED.items()}
+    if subprocess.run(
+        ["git", "status", "--porcelain"], cwd=ROOT, capture_output=True, check=True
+    ).stdout.strip():
+        sys.exit(
+            "there are changes that are not committed: a release is made from a clean checkout"
+        )
+    texts = {
+        name: change((ROOT / name).read_text("utf-8"), asked.version)
+        for name, change in CHANGED.items()
+    }
     commands = [
         ["bash", ".ci/run"],
         ["git", "commit", "--all", "--message", f"Release {asked.version}"],
@@ -56,7 +67,11 @@ def main() -> None:
         [sys.executable, "-m", "build"],
     ]
     if asked.dry_run:
-        print("would change", ", ".join(texts), *(f"\nwould run {' '.join(command)}" for command in commands))
+        print(
+            "would change",
+            ", ".join(texts),
+            *(f"\nwould run {' '.join(command)}" for command in commands),
+        )
         return
     for name, text in texts.items():
         (ROOT / name).write_text(text, encoding="utf-8", newline="\n")

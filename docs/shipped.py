@@ -19,7 +19,16 @@ from kurbel.tables.tables import grouped, together
 
 _CONFIGS = Path(__file__).parent.parent / "configs"
 _SHOWN = {
-    "motion": ("stroke", "swing", "time_ratio", "c_m", "c_max", "b_max", "cut_off_head", "cut_off_crank"),
+    "motion": (
+        "stroke",
+        "swing",
+        "time_ratio",
+        "c_m",
+        "c_max",
+        "b_max",
+        "cut_off_head",
+        "cut_off_crank",
+    ),
     "forces": ("P_peak", "N_peak", "T_max", "work", "power", "mean_pressure", "loss_crosshead"),
     "flywheel": ("M_mean", "dE", "J", "delta"),
     "stress": ("safety_pin_min", "safety_web_A_min"),
@@ -63,20 +72,33 @@ def _comment(text: str) -> str:
 
 def _answers(command: str, ids: tuple[str, ...], file: Path) -> str:
     """Return a row for each of these key values that the command prints for the machine; '' where it has none."""
-    asked = [command, str(file), "-f", "json", "--units", "metric", "--digits", "4", "--angles", "0"]
+    asked = [
+        command,
+        str(file),
+        "-f",
+        "json",
+        "--units",
+        "metric",
+        "--digits",
+        "4",
+        "--angles",
+        "0",
+    ]
     ran = CliRunner().invoke(kurbel, asked)
     if ran.exit_code:
         return ""
     answer = json.loads(ran.stdout)
     equal = grouped(answer.get("cylinders", []), lambda one: repr(one["key_values"]))
-    parts = [(together([part["name"] for part in parts]), parts[0]["key_values"]) for parts in equal]
+    parts = [
+        (together([part["name"] for part in parts]), parts[0]["key_values"]) for parts in equal
+    ]
     several = len(parts) > 1
     parts.append(("", answer.get("machine_key_values", [])))
     rows = [
-        f"| {_named(one, name if several else '')} | {one['value']:g} {Look().unit(one['unit'])} | {_angle(one)} |"
+        f"| {_named(value, name if several else '')} | {value['value']:g} {Look().unit(value['unit'])} | {_angle(value)} |"
         for name, values in parts
-        for one in values
-        if one["id"] in ids and abs(one["value"]) > _ROUNDING
+        for value in values
+        if value["id"] in ids and abs(value["value"]) > _ROUNDING
     ]
     return "".join(f"{row}\n" for row in dict.fromkeys(rows))
 

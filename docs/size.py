@@ -55,7 +55,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         start = _spent(["--version"])
-        head = _HEAD.format(processor=platform.machine(), python=platform.python_version(), start=start)
+        head = _HEAD.format(
+            processor=platform.machine(), python=platform.python_version(), start=start
+        )
         print("\n\n".join([head, *_traces(), *_machines(), *_sweeps()]))
 
 
@@ -74,9 +76,18 @@ def _spent(words: Sequence[str]) -> Spent:
 
 def _traces() -> Iterator[str]:
     rows = []
-    for samples, cycles in ((720, 1), (7_200, 1), (72_000, 1), (500_000, 1), (720, 100), (3_600, 300)):
+    for samples, cycles in (
+        (720, 1),
+        (7_200, 1),
+        (72_000, 1),
+        (500_000, 1),
+        (720, 100),
+        (3_600, 300),
+    ):
         _trace(samples, cycles)
-        rows.append((f"{samples:,}", str(cycles), str(_spent(["forces", "bench.yaml", "--key-values"]))))
+        rows.append(
+            (f"{samples:,}", str(cycles), str(_spent(["forces", "bench.yaml", "--key-values"])))
+        )
     yield "## Traces\n\n`kurbel forces bench.yaml --key-values`: a four-stroke engine with samples from a CSV file."
     yield _table(("samples of a cycle", "cycles", "time, memory"), rows)
 
@@ -88,7 +99,11 @@ def _trace(samples: int, cycles: int) -> None:
             phi = 720 * k / samples
             near = min(phi, 720 - phi)
             p = 1 + 49 * math.exp(-((near / 40) ** 2))
-            file.write(f"{phi:.9g}," + ",".join(f"{p * (1 + 0.01 * math.sin(c)):.6g}" for c in range(cycles)) + "\n")
+            file.write(
+                f"{phi:.9g},"
+                + ",".join(f"{p * (1 + 0.01 * math.sin(c)):.6g}" for c in range(cycles))
+                + "\n"
+            )
     layout = f"pressure_columns: 2-{cycles + 1}" if cycles > 1 else "pressure_column: 2"
     Path("bench.yaml").write_text(
         f"""speed: 1500 rpm
@@ -121,7 +136,12 @@ def _machines() -> Iterator[str]:
             encoding="utf-8",
         )
         commands = ("forces", "flywheel", "balance")
-        rows.append((str(count), *(str(_spent([command, "engine.yaml", "--key-values"])) for command in commands)))
+        rows.append(
+            (
+                str(count),
+                *(str(_spent([command, "engine.yaml", "--key-values"])) for command in commands),
+            )
+        )
     yield "## Cylinders\n\nEqual cylinders with different crank positions, `--key-values` of each command:"
     yield _table(("cylinders", "`forces`", "`flywheel`", "`balance`"), rows)
     rows = []
@@ -152,7 +172,14 @@ def _sweeps() -> Iterator[str]:
         span = {"rod_ratio": "uniform(3, 6)", "flywheel.fluctuation": "uniform(0.01, 0.05)"}
         span |= {"crank": "uniform(200 mm, 400 mm)", "speed": "uniform(80 rpm, 120 rpm)"}
         for count in counts:
-            words = ["sweep", str(CONFIGS / f"{machine}.yaml"), "--vary", f"{key}={span[key]}", "--sample", str(count)]
+            words = [
+                "sweep",
+                str(CONFIGS / f"{machine}.yaml"),
+                "--vary",
+                f"{key}={span[key]}",
+                "--sample",
+                str(count),
+            ]
             spent = _spent([*words, "--columns", column, "-o", "rows.csv", "--jobs", "1"])
             rows.append((f"`{machine}`", f"`{key}`", f"`{column}`", f"{count:,}", str(spent)))
     yield "## Sweeps\n\n`kurbel sweep MACHINE --vary KEY=uniform(…) --sample N --columns COLUMN -o rows.csv --jobs 1`:"

@@ -48,7 +48,15 @@ Books marked * are read from their Python companions (code and stored output, FO
 GitHub); a slip of such a program is not a slip of the book.
 """
 
-_COMPANIONS = ("Theory of Machines", "Gupta, Fund", "Tayal", "Bhandari", "Keswani", "Jindal", "Bevan")
+_COMPANIONS = (
+    "Theory of Machines",
+    "Gupta, Fund",
+    "Tayal",
+    "Bhandari",
+    "Keswani",
+    "Jindal",
+    "Bevan",
+)
 
 
 def page() -> str:
@@ -70,7 +78,11 @@ def page() -> str:
 def _counts() -> str:
     rows = [row for rows in TABLE.values() for row in rows]
     judged = [_JUDGED[row["verdict"]] for row in rows if "ask" in row]
-    counted = [(what, str(judged.count(what))) for what in dict.fromkeys(_JUDGED.values()) if what in judged]
+    counted = [
+        (what, str(judged.count(what)))
+        for what in dict.fromkeys(_JUDGED.values())
+        if what in judged
+    ]
     counted.append(("not computed by kurbel, with the reason", str(len(rows) - len(judged))))
     text = f"## Worked examples in short\n\n{len(TABLE)} examples with {len(rows)} figures:"
     return f"{text}\n\n{_table('right', '>figures', rows=counted)}"
@@ -106,7 +118,12 @@ def _book(source: str) -> str:
 def _source(example: str) -> str:
     """Return what is said of the source: at the head of the machine file, else beside the entry of the table."""
     file = next(
-        (f for f in [FOLDER / f"{example}.yaml", *sorted(FOLDER.glob(f"{example}-*.yaml"))] if f.exists()), None
+        (
+            f
+            for f in [FOLDER / f"{example}.yaml", *sorted(FOLDER.glob(f"{example}-*.yaml"))]
+            if f.exists()
+        ),
+        None,
     )
     if file:
         comment = re.match(r"(?:#.*\n)+", file.read_text(encoding="utf-8"))
@@ -125,12 +142,14 @@ def _row(example: str, row: dict[str, Any]) -> tuple[str, ...]:
     judged = _JUDGED[row["verdict"]] + (f" ({row['why']})" if "why" in row else "")
     figures = _figures({"file": example, **row})
     mark = "⁰" if "back" in row else "ᵍ" if _constants(row) else ""
-    shown = ", ".join(_shown(one) for one in figures) + mark
+    shown = ", ".join(_shown(figure) for figure in figures) + mark
     return example, row["of"], printed, shown, _unit(row), _deviation(printed, figures), judged
 
 
 def _unit(row: dict[str, Any]) -> str:
-    return re.sub(r"(?<=[a-z])([23])", lambda power: "²³"[int(power[1]) - 2], row["unit"].replace("deg", "°"))
+    return re.sub(
+        r"(?<=[a-z])([23])", lambda power: "²³"[int(power[1]) - 2], row["unit"].replace("deg", "°")
+    )
 
 
 def _figures(row: dict[str, Any]) -> list[float]:
@@ -139,7 +158,10 @@ def _figures(row: dict[str, Any]) -> list[float]:
         return [row.get("strict", row["exact"])]
     values = told(row)
     factor = SI[row["unit"]] * row.get("times", 1)
-    return [(one - row.get("plus", 0)) / factor for one in (values if isinstance(values, list) else [values])]
+    return [
+        (one - row.get("plus", 0)) / factor
+        for one in (values if isinstance(values, list) else [values])
+    ]
 
 
 def _constants(row: dict[str, Any]) -> bool:
@@ -153,7 +175,9 @@ def _deviation(printed: str, figures: Sequence[float]) -> str:
     except ValueError:
         return ""
     # of several the worst is shown
-    return max((_relative(*pair) for pair in pairs), key=lambda text: abs(float(text.rstrip(" %") or 0)))
+    return max(
+        (_relative(*pair) for pair in pairs), key=lambda text: abs(float(text.rstrip(" %") or 0))
+    )
 
 
 def _relative(printed: float, computed: float) -> str:
@@ -183,8 +207,22 @@ def _roetscher() -> str:
     pump = cylinder.columns([90, 270])["P_driven"] / _KGF
     inertia = "826 kg rounded to 830 kg, v to 2.095 m/s"
     rows: list[tuple[str, str, str, float, str, str]] = [
-        ("607", "area of the steam piston, head end", "1546.3", case["A_head"].value / _CM2, "cm²", ""),
-        ("607", "area of the steam piston, crank end", "1511.9", case["A_crank"].value / _CM2, "cm²", ""),
+        (
+            "607",
+            "area of the steam piston, head end",
+            "1546.3",
+            case["A_head"].value / _CM2,
+            "cm²",
+            "",
+        ),
+        (
+            "607",
+            "area of the steam piston, crank end",
+            "1511.9",
+            case["A_crank"].value / _CM2,
+            "cm²",
+            "",
+        ),
         ("604", "c_max/v for L/R = 5", "1.02", case["c_max"].value / case["v"].value, "", ""),
         ("604", "c_max/v for L/R = 4", "1.03", fourth.c_max.value, "", ""),
         (
@@ -237,7 +275,11 @@ def _infinite(case: Any) -> float:
 
 def _agreed(printed: str, value: float, why: str) -> str:
     decimals = len(printed.partition(".")[2])
-    return "both" if round(value, decimals) == float(printed) else f"kurbel; {why or 'rounded on the way'}"
+    return (
+        "both"
+        if round(value, decimals) == float(printed)
+        else f"kurbel; {why or 'rounded on the way'}"
+    )
 
 
 def _own_book(title: str, rows: Iterable[tuple[str, ...]]) -> str:
@@ -248,7 +290,9 @@ def _own_book(title: str, rows: Iterable[tuple[str, ...]]) -> str:
 def _printed_table(name: str) -> list[list[float]]:
     """Return the rows of a printed table that the tests hold; an asterisk there marks a misprint."""
     lines = (_ROOT / "tests" / "reference" / name).read_text("utf-8").splitlines()
-    return [[float(figure.strip("*")) for figure in line.split(",")] for line in lines if line[0] != "#"]
+    return [
+        [float(figure.strip("*")) for figure in line.split(",")] for line in lines if line[0] != "#"
+    ]
 
 
 def _zusammenstellung() -> str:
@@ -256,9 +300,11 @@ def _zusammenstellung() -> str:
     figures = [
         (f"L/R = {ratio:g}, φ = {degrees:g}°", row, printed, exact(ratio, degrees))
         for ratio, degrees, *both in _printed_table("zusammenstellung_112.csv")
-        for row, printed, exact in zip(("acceleration", "velocity"), both, (_acceleration, _velocity))
+        for row, printed, exact in zip(
+            ("acceleration", "velocity"), both, (_acceleration, _velocity)
+        )
     ]
-    wrong = [one for one in figures if abs(one[2] - one[3]) > 0.5005e-3]
+    wrong = [figure for figure in figures if abs(figure[2] - figure[3]) > 0.5005e-3]
     rows = ((place, row, f"{printed:.3f}", f"{value:.5f}") for place, row, printed, value in wrong)
     text = f"""## R, Zusammenstellung 112 (pp. 602–603)
 
@@ -278,7 +324,9 @@ def _velocity(ratio: float, degrees: float) -> float:
 
 def _blau() -> str:
     """Return the examples 31 to 35, first-order formulas on purpose."""
-    roots = {ratio: math.degrees(math.acos((math.sqrt(ratio**2 + 8) - ratio) / 4)) for ratio in (5, 4)}
+    roots = {
+        ratio: math.degrees(math.acos((math.sqrt(ratio**2 + 8) - ratio) / 4)) for ratio in (5, 4)
+    }
     sixth = math.degrees(math.acos((math.sqrt(41) - 5) / 4))
     minus_sixth = _where_minus_a_sixth()
     rows: list[tuple[str, str, str, float, str]] = [
@@ -308,7 +356,9 @@ def _blau() -> str:
         )
         for n, of, printed, value, unit in rows
     )
-    text = "The first-order formulas of the book, which `--compare` prints next to the exact columns."
+    text = (
+        "The first-order formulas of the book, which `--compare` prints next to the exact columns."
+    )
     return _own_book("E. Blau (1905)", shown).replace("\n\n", f"\n\n{text}\n\n", 1)
 
 
@@ -329,7 +379,7 @@ def _tredgold() -> str:
         (f"L/R = {ratio:g}, φ = {degrees:g}°", printed, _velocity(ratio, degrees))
         for degrees, ratio, printed, _ in _printed_table("tredgold_1838.csv")
     ]
-    wrong = [one for one in figures if abs(one[1] - one[2]) >= 0.01]
+    wrong = [figure for figure in figures if abs(figure[1] - figure[2]) >= 0.01]
     rows = ((place, f"{printed:.2f}", f"{value:.5f}") for place, printed, value in wrong)
     text = f"""## T. Tredgold, The Steam Engine (1838): rotary force
 
@@ -349,19 +399,43 @@ def _redtenbacher() -> str:
             lambda: 100 * case["loss_crosshead_redtenbacher"].value,
             "both (printed 1/120)",
         ),
-        ("D 5", "with the logarithm", "–", lambda: 100 * (1 - 60 * math.log1p(1 / 60)), "not printed"),
+        (
+            "D 5",
+            "with the logarithm",
+            "–",
+            lambda: 100 * (1 - 60 * math.log1p(1 / 60)),
+            "not printed",
+        ),
         ("–", "over the stroke", "–", lambda: 100 * case["loss_crosshead"].value, over),
     ]
     shown = (
-        (place, of, printed, _shown(value()), "%", _relative(float(printed), value()) if printed != "–" else "", why)
+        (
+            place,
+            of,
+            printed,
+            _shown(value()),
+            "%",
+            _relative(float(printed), value()) if printed != "–" else "",
+            why,
+        )
         for place, of, printed, value, why in rows
     )
-    return _own_book("F. Redtenbacher, Der Maschinenbau (1862): friction loss of the crosshead", shown)
+    return _own_book(
+        "F. Redtenbacher, Der Maschinenbau (1862): friction loss of the crosshead", shown
+    )
 
 
 def _valves() -> str:
     rows = (
-        (one.source, one.of, one.printed, _shown(one.computed), one.unit, _of_print(one), _judged_print(one))
+        (
+            one.source,
+            one.of,
+            one.printed,
+            _shown(one.computed),
+            one.unit,
+            _of_print(one),
+            _judged_print(one),
+        )
         for one in PRINTS
     )
     text = (
@@ -370,7 +444,9 @@ def _valves() -> str:
         "eccentric rod is known: there the tests hold kurbel against a bisection in 40 digits, and against the "
         "eccentric as a slider-crank."
     )
-    return _own_book("Valve gears in print, 1859 to 1892", rows).replace("\n\n", f"\n\n{text}\n\n", 1)
+    return _own_book("Valve gears in print, 1859 to 1892", rows).replace(
+        "\n\n", f"\n\n{text}\n\n", 1
+    )
 
 
 def _of_print(one: Print) -> str:

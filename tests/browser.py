@@ -10,9 +10,18 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+CHROMIUM = (
+    shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+)
 _QUIET = (
-    *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
+    *(
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--disable-quic",
+        "--no-first-run",
+        "--disable-sync",
+    ),
     "--disable-dev-shm-usage",  # a container may have too little of it for several at once
     *("--disable-background-networking", "--disable-component-update", "--enable-logging=stderr"),
 )
@@ -23,7 +32,15 @@ def dumped(url: str, profile: Path, *options: str) -> tuple[str, list[str]]:
     """Return the page at the end of its scripts as HTML, and what it wrote to the console."""
     assert CHROMIUM
     done = subprocess.run(
-        [CHROMIUM, *_QUIET, f"--user-data-dir={profile}", "--virtual-time-budget=20000", *options, "--dump-dom", url],
+        [
+            CHROMIUM,
+            *_QUIET,
+            f"--user-data-dir={profile}",
+            "--virtual-time-budget=20000",
+            *options,
+            "--dump-dom",
+            url,
+        ],
         capture_output=True,
         encoding="utf-8",
         check=True,
@@ -36,7 +53,9 @@ class _Alone(http.server.SimpleHTTPRequestHandler):
     """Serves files, and forbids a page to ask for anything from elsewhere: the console tells if it does."""
 
     def end_headers(self) -> None:
-        self.send_header("Content-Security-Policy", "default-src 'self' 'unsafe-inline' data: blob:")
+        self.send_header(
+            "Content-Security-Policy", "default-src 'self' 'unsafe-inline' data: blob:"
+        )
         super().end_headers()
 
     def log_message(self, *_: object) -> None:
@@ -46,7 +65,9 @@ class _Alone(http.server.SimpleHTTPRequestHandler):
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
     """Serve a folder on this machine; yield its address."""
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Alone, directory=str(folder)))
+    server = http.server.ThreadingHTTPServer(
+        ("127.0.0.1", 0), functools.partial(_Alone, directory=str(folder))
+    )
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
         yield f"http://127.0.0.1:{server.server_port}"

@@ -2,5 +2,8 @@
 
 from pathlib import Path
 
-ALL = {path.stem: path.read_text("utf-8") for path in sorted(Path(__file__).parent.glob("machine_file/good/*.yaml"))}
+ALL = {
+    path.stem: path.read_text("utf-8")
+    for path in sorted(Path(__file__).parent.glob("machine_file/good/*.yaml"))
+}
 DEMO = ALL["demo"]

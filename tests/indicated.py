@@ -43,7 +43,9 @@ def absolute(engine: Engine, degrees: Any) -> Any:
     burnt = 1 - np.exp(-6.9 * np.clip((phi - engine.begin) / engine.lasts, 0, 1.3) ** 2.5)
     closed = begun * (1 + engine.heat * burnt)
     end = float(engine.inlet * (1 + engine.heat))
-    blown = engine.outlet + (end - engine.outlet) * np.exp(-np.clip(phi - 150, 0, None) / 12) * (phi > 0)
+    blown = engine.outlet + (end - engine.outlet) * np.exp(-np.clip(phi - 150, 0, None) / 12) * (
+        phi > 0
+    )
     released = np.where(phi > 150, np.minimum(closed, blown), closed)
     if engine.two_stroke:
         return released
@@ -58,7 +60,9 @@ def _exchange(engine: Engine, phi: Any, blown: Any) -> Any:
     return blown * (1 - mixed) + engine.inlet * mixed
 
 
-def cycles(engine: Engine, count: int, step: float, noise: float = 0.0, spread: float = 0.0, seed: int = 1) -> Any:
+def cycles(
+    engine: Engine, count: int, step: float, noise: float = 0.0, spread: float = 0.0, seed: int = 1
+) -> Any:
     """Angles (n,) after the firing dead centre, and absolute pressures (count, n) in bar with noise in each cycle."""
     rng = np.random.default_rng(seed)
     turn = 360.0 if engine.two_stroke else 720.0

@@ -30,7 +30,14 @@ def one_cylinder(mechanism: Mechanism, rpm: float | None = None, **cylinder: Any
 
 
 def single_acting(
-    crank: float, rod: float, bore: float, pressure: float, rpm: float, mass: float, vertical: bool = False, **more: Any
+    crank: float,
+    rod: float,
+    bore: float,
+    pressure: float,
+    rpm: float,
+    mass: float,
+    vertical: bool = False,
+    **more: Any,
 ) -> CylinderForces:
     """Solve a single-acting cylinder whose gauge pressure in Pa is the same all the time."""
     return one_cylinder(

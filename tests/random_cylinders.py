@@ -39,7 +39,11 @@ def random_cylinder(random: np.random.Generator, friction: bool) -> CylinderForc
     return one_cylinder(
         mechanism,
         60 * speed,
-        pistons=(Piston(bore, 0.0, bore / 5, Indicator(head, random_chamber(random) if crank_end else None)),),
+        pistons=(
+            Piston(
+                bore, 0.0, bore / 5, Indicator(head, random_chamber(random) if crank_end else None)
+            ),
+        ),
         masses=Masses(mass, random_rod(random, mass / 2, crank / lam)),
         friction=random_friction(random, bore) if friction else None,
         inclination=random.choice([None, 0.0, 30.0, 90.0]),
@@ -52,7 +56,9 @@ def random_chamber(random: np.random.Generator) -> Chamber:
         return constant_pressure(random.uniform(-0.5, 1) * 1e5)
     if kind == 1:
         return Diesel.from_keys(
-            intake=random.uniform(-0.5, 0) * 1e5, cut_off=random.uniform(0.02, 0.2), compression_ratio=12.0
+            intake=random.uniform(-0.5, 0) * 1e5,
+            cut_off=random.uniform(0.02, 0.2),
+            compression_ratio=12.0,
         )
     z = np.sort(random.uniform(0, 1, 3))
     p = random.uniform(-0.9, 3, 8)
@@ -69,7 +75,10 @@ def random_rod(random: np.random.Generator, mass: float, length: float) -> Conne
         return None
     if kind == 1:
         return ConnectingRod(mass, 0.35)
-    exact: dict[str, Any] = {"center_of_gravity": random.uniform(0.2, 0.9) * length, "inertia": mass * length**2 / 8}
+    exact: dict[str, Any] = {
+        "center_of_gravity": random.uniform(0.2, 0.9) * length,
+        "inertia": mass * length**2 / 8,
+    }
     return ConnectingRod(mass, **exact)
 
 

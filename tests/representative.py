@@ -30,7 +30,9 @@ def case_of(name: str) -> Case:
 def shipped(*names: str) -> list[pytest.ParameterSet]:
     """Return the machines that come with kurbel, slow but for these names."""
     assert set(names) <= {path.stem for path in SHIPPED}
-    return few(SHIPPED, [path for path in SHIPPED if path.stem in names], [path.stem for path in SHIPPED])
+    return few(
+        SHIPPED, [path for path in SHIPPED if path.stem in names], [path.stem for path in SHIPPED]
+    )
 
 
 def few(

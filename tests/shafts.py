@@ -44,9 +44,15 @@ def place_at(body: FreeBody, part: str, name: str) -> Place:
 
 
 def strength(
-    crankshaft: Crankshaft, mechanism: Any = None, card: Any = None, rpm: float | None = None, **cylinder: Any
+    crankshaft: Crankshaft,
+    mechanism: Any = None,
+    card: Any = None,
+    rpm: float | None = None,
+    **cylinder: Any,
 ) -> ThrowStrength:
     """Solve a single-acting machine of 0.4 m bore with this crankshaft; 10 bar all the time without a card."""
     piston = Piston(0.4, indicator=Indicator(card or constant_pressure(1e6)))
     own = Cylinder(mechanism or SliderCrank(0.3, 1.5), pistons=(piston,), **cylinder)
-    return Case(Machine((own,), speed=None if rpm is None else rpm / 60, crankshaft=crankshaft)).stress.throws[0]
+    return Case(
+        Machine((own,), speed=None if rpm is None else rpm / 60, crankshaft=crankshaft)
+    ).stress.throws[0]

@@ -15,7 +15,9 @@ from kurbel.machine_file.overrides import dotted, leaves, tree_of
 from representative import CONFIGS
 
 WATERWORKS = str(CONFIGS["waterworks"])
-EXAMPLES = sorted(path for path in Path(__file__).parent.glob("examples/*.yaml") if path.stem != "answers")
+EXAMPLES = sorted(
+    path for path in Path(__file__).parent.glob("examples/*.yaml") if path.stem != "answers"
+)
 NUMBER = re.compile(r"([0-9.]+(?:e[+-]?[0-9]+)?)(?: (.*))?")
 NO_NUMBERS = {"uncertainty", "limits", "expect", "trace", "points", "name", "count"}
 
@@ -33,11 +35,19 @@ def rows(*args: str, file: str = WATERWORKS) -> list[dict[str, object]]:
 def numbers_in(origin: Origin) -> list[tuple[str, float, str]]:
     """Return every key of a machine file whose value is a positive number, the number, and its unit."""
     try:
-        texts = [(path, NUMBER.fullmatch(text)) for path, text in leaves(tree_of(origin)) if isinstance(text, str)]
+        texts = [
+            (path, NUMBER.fullmatch(text))
+            for path, text in leaves(tree_of(origin))
+            if isinstance(text, str)
+        ]
     except KurbelError:
         return []
     known = [(path, found) for path, found in texts if found and not NO_NUMBERS & {*map(str, path)}]
-    return [(dotted(path), float(found[1]), found[2] or "") for path, found in known if float(found[1]) > 0]
+    return [
+        (dotted(path), float(found[1]), found[2] or "")
+        for path, found in known
+        if float(found[1]) > 0
+    ]
 
 
 def until_written(process: subprocess.Popen[str], part: Path, size: int) -> None:

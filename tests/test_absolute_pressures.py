@@ -28,10 +28,14 @@ GAUGE = MACHINE.format(counted="gauge", low="-0.01325 bar", high="5.98675 bar")
 
 def test_programs_are_told_too() -> None:
     (head, *_) = csv.reader(
-        printed("forces", "-", "--columns", "p_head", "--angles", "90", "-f", "csv", text=ABSOLUTE).splitlines()
+        printed(
+            "forces", "-", "--columns", "p_head", "--angles", "90", "-f", "csv", text=ABSOLUTE
+        ).splitlines()
     )
     assert head == ["phi_deg", "p_head_Pa_abs"]
-    parsed = answer("forces", "-", "--columns", "p_head", "--angles", "90", text=ABSOLUTE)["cylinders"][0]
+    parsed = answer("forces", "-", "--columns", "p_head", "--angles", "90", text=ABSOLUTE)[
+        "cylinders"
+    ][0]
     assert parsed["columns"][1]["unit"] == "Pa abs"
     assert parsed["columns"][1]["values"] == pytest.approx([1e5], rel=1e-15)
     (p_max,) = (one for one in parsed["key_values"] if one["id"] == "p_max")
@@ -49,7 +53,17 @@ def test_forces_and_differences_hang_on_no_zero() -> None:
 
 
 def test_places_count_as_the_file_does() -> None:
-    found = printed("forces", "-", "--where", "p_head = 7 bar", "--columns", "p_head", "-f", "csv", text=ABSOLUTE)
+    found = printed(
+        "forces",
+        "-",
+        "--where",
+        "p_head = 7 bar",
+        "--columns",
+        "p_head",
+        "-f",
+        "csv",
+        text=ABSOLUTE,
+    )
     assert float(found.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
 
 

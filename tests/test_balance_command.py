@@ -15,7 +15,7 @@ def parsed(name: str, *more: str) -> dict[str, Any]:
 
 
 def ids(entries: list[dict[str, Any]]) -> list[str]:
-    return [one["id"] for one in entries]
+    return [entry["id"] for entry in entries]
 
 
 def test_columns_and_tables_have_the_names_that_are_relied_on() -> None:

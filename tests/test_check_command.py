@@ -26,7 +26,9 @@ def called(text: str, *arguments: str) -> tuple[int, str, str]:
 
 def test_a_limit_passed_in_magnitude_by_the_other_sign_is_told() -> None:
     text = ENGINE + f"masses: {{piston: 500 kg}}\nindicator: {{head_end: {{{PRESSURE}}}}}\n"
-    low, high = sorted(solve(loads(text)).cylinders[0].extremes_of("T") or (), key=lambda one: one.value)
+    low, high = sorted(
+        solve(loads(text)).cylinders[0].extremes_of("T") or (), key=lambda one: one.value
+    )
     assert high.value > 0 > low.value
     assert -low.value < high.value  # so that the largest magnitude is that of T_max
     halfway = (high.value - low.value) / 2
@@ -34,7 +36,9 @@ def test_a_limit_passed_in_magnitude_by_the_other_sign_is_told() -> None:
     assert status == 0
     assert f"T_max = {high.value:.9g} N is beyond it with the other sign; " in listed
     for told in ("", f", T_max: {2 * high.value} N"):  # who bounds the other end too knows
-        status, listed, _ = called(text + f"limits: {{T_min: -{2 * high.value} N{told}}}\n", "check")
+        status, listed, _ = called(
+            text + f"limits: {{T_min: -{2 * high.value} N{told}}}\n", "check"
+        )
         assert (status, "other sign" in listed) == (0, False)
 
 
@@ -52,9 +56,16 @@ def found_as_json(text: str, *arguments: str) -> tuple[int, dict[str, Any]]:
 
 
 def test_findings_of_a_check_have_their_place() -> None:
-    text = ENGINE + "limits:\n  c_max: 1 m/s\n  delta: 0.01\n  s: 900 mm\nexpect:\n  φ_o: 180 deg ± 1 deg\n"
+    text = (
+        ENGINE
+        + "limits:\n  c_max: 1 m/s\n  delta: 0.01\n  s: 900 mm\nexpect:\n  φ_o: 180 deg ± 1 deg\n"
+    )
     status, parsed = found_as_json(text)
-    places = {one["key"]: (one["line"], one["column"], one["severity"]) for one in parsed["findings"] if one["key"]}
+    places = {
+        one["key"]: (one["line"], one["column"], one["severity"])
+        for one in parsed["findings"]
+        if one["key"]
+    }
     assert status == 2  # δ cannot be judged
     assert parsed["machine"] == "machine"
     assert places == {
@@ -63,7 +74,11 @@ def test_findings_of_a_check_have_their_place() -> None:
         "expect.φ_o": (10, 3, "info"),
         "limits.delta": (7, 3, "error"),
     }
-    (left_out,) = (one for one in parsed["findings"] if "no bore" in one["message"] or "no indicator" in one["message"])
+    (left_out,) = (
+        one
+        for one in parsed["findings"]
+        if "no bore" in one["message"] or "no indicator" in one["message"]
+    )
     assert (left_out["key"], left_out["severity"]) == (None, "info")
     assert found_as_json(ENGINE + "limits: {c_max: 1 m/s}\n")[0] == 1
     assert found_as_json(ENGINE)[0] == 0
@@ -71,9 +86,13 @@ def test_findings_of_a_check_have_their_place() -> None:
 
 def test_a_warning_has_the_place_of_its_cylinder() -> None:
     one = "  - {name: %s, crank: 400 mm, rod: 2 m, bore: 450 mm, %s}\n"
-    text = "speed: 60 rpm\ncylinders:\n" + one % ("left", GAUGE.strip()) + one % ("right", GAUGE.strip())
+    text = (
+        "speed: 60 rpm\ncylinders:\n"
+        + one % ("left", GAUGE.strip())
+        + one % ("right", GAUGE.strip())
+    )
     warnings = [one for one in found_as_json(text)[1]["findings"] if "absolute?" in one["message"]]
-    assert [(one["key"], one["line"], one["severity"]) for one in warnings] == [
+    assert [(warning["key"], warning["line"], warning["severity"]) for warning in warnings] == [
         ("cylinders[0]", 3, "warning"),
         ("cylinders[1]", 4, "warning"),
     ]
@@ -93,7 +112,9 @@ JENKINS = {
 def test_a_check_as_junit(tmp_path: Path) -> None:
     good, bad, wrong = (tmp_path / name for name in ("good.yaml", "b&d.yaml", "wrong.yaml"))
     engine = "{speed: 50 rpm, crank: 400 mm, rod: 2000 mm, "
-    good.write_text(engine + "limits: {c_max: 3 m/s}, expect: {b_max: 13.16 m/s2 ± 0.1 %}}", encoding="utf-8")
+    good.write_text(
+        engine + "limits: {c_max: 3 m/s}, expect: {b_max: 13.16 m/s2 ± 0.1 %}}", encoding="utf-8"
+    )
     bad.write_text(engine + "limits: {c_max: 1 m/s, b_max: 20 m/s2}}", encoding="utf-8")
     wrong.write_text("crank: <400", encoding="utf-8")
     results = tmp_path / "results.xml"
@@ -109,7 +130,10 @@ def test_a_check_as_junit(tmp_path: Path) -> None:
     assert any(case.attrib["name"].startswith("crank: ") for case in suites[str(wrong)])
     for name, suite in suites.items():
         cases = suite.findall("testcase")
-        assert (int(suite.attrib["tests"]), int(suite.attrib["failures"])) == (len(cases), failed[name])
+        assert (int(suite.attrib["tests"]), int(suite.attrib["failures"])) == (
+            len(cases),
+            failed[name],
+        )
         names = [case.attrib["name"] for case in cases]
         assert len(set(names)) == len(names)  # GitLab reads the first of a name alone
         assert {case.attrib["classname"] for case in cases} == {name}
@@ -123,7 +147,9 @@ def test_a_check_as_junit(tmp_path: Path) -> None:
 def test_faults_of_the_file_are_findings_too(tmp_path: Path) -> None:
     status, parsed = found_as_json("speed: 60\ncrank: 400 mm\nrd: 2 m\n")
     assert (status, parsed["machine"]) == (2, None)
-    assert [tuple(one[key] for key in FINDING if key != "message") for one in parsed["findings"]] == [
+    assert [
+        tuple(one[key] for key in FINDING if key != "message") for one in parsed["findings"]
+    ] == [
         ("<stdin>", 1, 8, "speed", "error"),
         ("<stdin>", 3, 1, "rd", "error"),
     ]
@@ -212,7 +238,8 @@ def of_two(figures: str, *arguments: str) -> tuple[int, str]:
 
 
 @pytest.mark.parametrize(
-    ("name", "largest"), [("T_max", LP), ("HP.T_max", HP), ("LP.T_max", LP), ("machine.T_max", HP + LP)]
+    ("name", "largest"),
+    [("T_max", LP), ("HP.T_max", HP), ("LP.T_max", LP), ("machine.T_max", HP + LP)],
 )
 def test_a_limit_is_held_against_those_it_names(name: str, largest: float) -> None:
     """Of each cylinder, and not of the machine, where nobody is named."""
@@ -227,22 +254,43 @@ def test_expectations_have_scopes_too() -> None:
     lines = [f"  {name}: {newton(size)} ± 0.1 %" for name, size in figures.items()]
     status, told = of_two("\n".join(["expect:", *lines]), "check")
     assert (status, told.count(" PASS ")) == (0, 3)
-    assert of_two(f"expect: {{T_max: {newton(LP)} ± 0.1 %}}", "check")[0] == 1  # the HP cylinder has less
+    assert (
+        of_two(f"expect: {{T_max: {newton(LP)} ± 0.1 %}}", "check")[0] == 1
+    )  # the HP cylinder has less
 
 
 def test_a_sweep_keeps_limits_of_those_they_name() -> None:
-    bounds = f"limits: {{LP.T_max: {newton(1.001 * LP)}, machine.T_max: {newton(1.001 * (HP + LP))}}}"
-    asked = ("sweep", "--vary", "cylinders.1.bore=400,500,600 mm", "--vary", "speed=50,60 rpm", "--columns", "LP.T_max")
+    bounds = (
+        f"limits: {{LP.T_max: {newton(1.001 * LP)}, machine.T_max: {newton(1.001 * (HP + LP))}}}"
+    )
+    asked = (
+        "sweep",
+        "--vary",
+        "cylinders.1.bore=400,500,600 mm",
+        "--vary",
+        "speed=50,60 rpm",
+        "--columns",
+        "LP.T_max",
+    )
     status, told = of_two(bounds, *asked, "-f", "json")
     found = [json.loads(line) for line in told.splitlines()]
-    assert (status, [one["broken"] for one in found]) == (0, [None, None, None, None, "LP.T_max", "LP.T_max"])
-    told = of_two(bounds, *asked, "-f", "json", "--set", "limits={}", "--set", "limits.machine.T_max=56 kN")[1]
-    assert [json.loads(line)["broken"] for line in told.splitlines()] == [None] * 2 + ["machine.T_max"] * 4
+    assert (status, [one["broken"] for one in found]) == (
+        0,
+        [None, None, None, None, "LP.T_max", "LP.T_max"],
+    )
+    told = of_two(
+        bounds, *asked, "-f", "json", "--set", "limits={}", "--set", "limits.machine.T_max=56 kN"
+    )[1]
+    assert [json.loads(line)["broken"] for line in told.splitlines()] == [None] * 2 + [
+        "machine.T_max"
+    ] * 4
 
 
 def test_shipped_machines_keep_their_limits_and_the_figures_that_their_sources_print() -> None:
     result = run("check", "-f", "json", *map(str, CONFIGS.values()))
     assert result.exit_code == 0, result.output
-    messages = [(Path(one["file"]).stem, one["message"]) for one in json.loads(result.stdout)["findings"]]
+    messages = [
+        (Path(one["file"]).stem, one["message"]) for one in json.loads(result.stdout)["findings"]
+    ]
     compared = {name for name, message in messages if ", expected " in message}
     assert compared == {"waterworks", "waterworks-two-cranks", "locomotive", "gas-engine"}

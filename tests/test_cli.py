@@ -21,7 +21,9 @@ def process(
     *arguments: str, stdout: object = subprocess.PIPE, **environment: str
 ) -> subprocess.CompletedProcess[bytes]:
     kept = {
-        key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "FORCE_COLOR", "COLUMNS", "TERM")
+        key: value
+        for key, value in os.environ.items()
+        if key not in ("NO_COLOR", "FORCE_COLOR", "COLUMNS", "TERM")
     }
     return subprocess.run(
         [sys.executable, "-m", "kurbel", *arguments],
@@ -46,7 +48,11 @@ def on_terminal(*arguments: str, columns: int = 120, rows: int = 50, **environme
         [sys.executable, "-m", "kurbel", *arguments],
         stdout=follower,
         stderr=follower,
-        env={key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "FORCE_COLOR", "LINES")}
+        env={
+            key: value
+            for key, value in os.environ.items()
+            if key not in ("NO_COLOR", "FORCE_COLOR", "LINES")
+        }
         | {"PYTHONIOENCODING": "utf-8"}
         | settings,
     ) as process:
@@ -68,7 +74,9 @@ def on_terminal(*arguments: str, columns: int = 120, rows: int = 50, **environme
 @POSIX_ONLY
 def test_a_terminal_gets_no_page_of_a_report_and_a_word_on_many_columns() -> None:
     assert b"give --output NAME.html" in on_terminal("report", WATERWORKS)
-    assert b"'--columns ID,ID' prints fewer" in on_terminal("sweep", WATERWORKS, "--vary", "rod_ratio=4,5")
+    assert b"'--columns ID,ID' prints fewer" in on_terminal(
+        "sweep", WATERWORKS, "--vary", "rod_ratio=4,5"
+    )
 
 
 def test_a_file_named_without_its_ending(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,7 +130,9 @@ def test_quick_commands_import_nothing_heavy() -> None:
     code += one_after_another(["table"], ["table", "-f", "csv"], ["table", "--compare"]) + (
         "heavy = {'yaml', 'rich', 'importlib.metadata'} & set(sys.modules)\nassert not heavy, heavy"
     )
-    result = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, encoding="utf-8")
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, check=False, encoding="utf-8"
+    )
     assert result.returncode == 0, result.stderr
 
 
@@ -142,10 +152,18 @@ def test_a_width_is_filled_where_it_is_asked_for(solved_once: None) -> None:
 
 @pytest.mark.parametrize("encoding", few(["ascii", "cp1252", "cp850"], ["ascii", "cp1252"]))
 def test_poor_encodings(encoding: str) -> None:
-    commands = ["table"], ["table", "-f", "json"], ["table", "-f", "markdown"], ["example"], ["--help"]
+    commands = (
+        ["table"],
+        ["table", "-f", "json"],
+        ["table", "-f", "markdown"],
+        ["example"],
+        ["--help"],
+    )
     code = one_after_another(*commands)
     environment = {**os.environ, "PYTHONIOENCODING": encoding, "PYTHONUTF8": "0", "LC_ALL": "C"}
-    result = subprocess.run([sys.executable, "-c", code], capture_output=True, env=environment, check=False)
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, env=environment, check=False
+    )
     assert (result.returncode, result.stderr) == (0, b"")
     assert "?" not in result.stdout.decode(encoding)
 
@@ -153,7 +171,9 @@ def test_poor_encodings(encoding: str) -> None:
 @POSIX_ONLY
 def test_reader_that_leaves_early() -> None:
     command = f"{sys.executable} -m kurbel table --step 0.05 -f csv | head -1"
-    result = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, check=False)
+    result = subprocess.run(
+        ["bash", "-o", "pipefail", "-c", command], capture_output=True, check=False
+    )
     assert (result.returncode, result.stderr) == (0, b"")
     assert result.stdout == b"rod_ratio,phi_deg,acceleration_factor,velocity_factor\n"
 
@@ -203,11 +223,15 @@ def test_a_low_terminal_shows_a_first_selection_and_says_how_to_see_all() -> Non
     assert (len(lines) < 24, lines[1].encode()) == (True, SELECTED)
     table, key_values = (shown[shown.index("φ") :].split("Key values")[n] for n in (0, 1))
     # every number is that of the whole page, where it is among all the others
-    numbers = [line.split() for line in whole.splitlines() if line[:1] in "xPNT" and line[:1].strip()]
+    numbers = [
+        line.split() for line in whole.splitlines() if line[:1] in "xPNT" and line[:1].strip()
+    ]
     for row in (line.split() for line in table.splitlines()[2:] if line and line[0] in "xPNT"):
         values = [float(value) for other in numbers if other[:2] == row[:2] for value in other[2:]]
         assert [float(value) for value in row[2:]] == pytest.approx(values[::6], rel=2e-3)
-    assert {line.split()[0] for line in key_values.splitlines() if line.startswith("  ")} < set(whole.split())
+    assert {line.split()[0] for line in key_values.splitlines() if line.startswith("  ")} < set(
+        whole.split()
+    )
 
 
 @POSIX_ONLY
@@ -220,7 +244,9 @@ def test_what_is_asked_for_is_shown_on_a_low_terminal_too(more: list[str]) -> No
 
 @POSIX_ONLY
 def test_a_high_terminal_and_a_pipe_have_all() -> None:
-    high = on_terminal("forces", WATERWORKS, columns=80, rows=500, NO_COLOR="1").replace(b"\r\n", b"\n")
+    high = on_terminal("forces", WATERWORKS, columns=80, rows=500, NO_COLOR="1").replace(
+        b"\r\n", b"\n"
+    )
     assert high == process("forces", WATERWORKS, COLUMNS="80").stdout
     assert SELECTED not in high
 
@@ -231,7 +257,8 @@ class Terminal(StringIO):
 
 
 @pytest.mark.parametrize(
-    ("stream", "more", "shown"), [(Terminal, {}, True), (StringIO, {}, False), (Terminal, {"CI": "true"}, False)]
+    ("stream", "more", "shown"),
+    [(Terminal, {}, True), (StringIO, {}, False), (Terminal, {"CI": "true"}, False)],
 )
 def test_a_terminal_shows_what_is_left_after_two_seconds(
     monkeypatch: pytest.MonkeyPatch, stream: type[StringIO], more: dict[str, str], shown: bool
@@ -243,12 +270,14 @@ def test_a_terminal_shows_what_is_left_after_two_seconds(
         monkeypatch.setenv(name, value)
     monkeypatch.setattr(group, "monotonic", lambda: next(seconds))
     monkeypatch.setattr(sys, "stderr", stream())
-    assert [*group.Progress("sweep").counted(range(10), "designs", 10)] == [*range(10)]
+    assert [*group.ProgressLine("sweep").counted(range(10), "designs", 10)] == [*range(10)]
     written = sys.stderr.getvalue()  # type: ignore[attr-defined]
     assert bool(written) is shown
     if shown:
         lines = written.split("\r")
-        assert lines[1] == "kurbel sweep: 1 of 10 designs, 18 s left"  # two seconds, one of them for the start
+        assert (
+            lines[1] == "kurbel sweep: 1 of 10 designs, 18 s left"
+        )  # two seconds, one of them for the start
         assert lines[4] == "kurbel sweep: 4 of 10 designs, 8 s left"
         assert (lines[-2].strip(), lines[-1]) == ("", "")
 
@@ -262,4 +291,7 @@ def test_example_lists_every_machine_with_its_first_line() -> None:
 def test_example_prints_the_file_unchanged_in_any_encoding() -> None:
     shipped = CONFIGS["waterworks"].read_bytes()
     assert run("example", "waterworks").stdout_bytes == shipped
-    assert process("example", "waterworks.yaml", PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout == shipped
+    assert (
+        process("example", "waterworks.yaml", PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout
+        == shipped
+    )

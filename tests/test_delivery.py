@@ -12,7 +12,10 @@ from kurbel.solver.chapters.delivery import Delivery
 from representative import CONFIGS
 
 AREA, STROKE = math.pi / 4 * 0.1**2, 0.2
-SINGLE, DOUBLE = "head_end: {constant: {expansion: 0 bar, compression: 3 bar}}", ", crank_end: mirrored"
+SINGLE, DOUBLE = (
+    "head_end: {constant: {expansion: 0 bar, compression: 3 bar}}",
+    ", crank_end: mirrored",
+)
 PUMPS = {
     "one single-acting": ((0,), ""),
     "one double-acting": ((0,), DOUBLE),
@@ -49,7 +52,9 @@ def pump_of(text: str) -> Delivery:
 def test_fluctuating_volumes_of_the_table(kind: str) -> None:
     for ratio, printed in zip(("infinite", 5, 4), BOOK[kind]):
         pump = pump_of(machine(kind, ratio))
-        assert pump["volume_fluctuation"].value / (AREA * STROKE) == pytest.approx(printed, abs=1e-6)
+        assert pump["volume_fluctuation"].value / (AREA * STROKE) == pytest.approx(
+            printed, abs=1e-6
+        )
     for ratio, printed in zip(("infinite", 5), BOOK[kind][3:]):
         pump = pump_of(machine(kind, ratio))
         assert pump["flow_max"].value / pump["flow_mean"].value == pytest.approx(printed, abs=1e-6)
@@ -98,7 +103,10 @@ def test_own_quadrature_of_offset_and_unequal_machines() -> None:
 
 
 def test_a_vessel_saves_what_the_books_say() -> None:
-    for kind, saved in (("one single-acting", 1 - 3 / (2 * math.pi**2)), ("one double-acting", 1 - 6 / math.pi**2)):
+    for kind, saved in (
+        ("one single-acting", 1 - 3 / (2 * math.pi**2)),
+        ("one double-acting", 1 - 6 / math.pi**2),
+    ):
         pump = pump_of(machine(kind, "infinite"))
         assert pump["vessel_saving"].value == pytest.approx(saved, rel=1e-12)
 
@@ -133,14 +141,18 @@ def test_heads_in_a_suction_pipe() -> None:
     assert columns["friction_head"] == pytest.approx([friction, 0.0], rel=1e-12)
     phi = np.linspace(0, np.pi, 100_001)
     most = np.max(acceleration * np.cos(phi) + friction * np.sin(phi) ** 2)
-    assert pump["suction_lift_max"].value == pytest.approx((101325 - 2339) / 9806.65 - most, rel=1e-9)
+    assert pump["suction_lift_max"].value == pytest.approx(
+        (101325 - 2339) / 9806.65 - most, rel=1e-9
+    )
     assert pump["flow_mean"].value == pytest.approx(0.9 * AREA * STROKE, rel=1e-12)
 
 
 def test_each_piston_and_chamber() -> None:
     delivery = api.solve(api.loads(MIXED)).delivery
     assert delivery.pump
-    assert sum(one["flow_mean"].value for one in delivery.pistons) == pytest.approx(delivery.pump["flow_mean"].value)
+    assert sum(piston["flow_mean"].value for piston in delivery.pistons) == pytest.approx(
+        delivery.pump["flow_mean"].value
+    )
     first = delivery.pistons[0].columns([40.0, 100.0, 200.0, 300.0])
     assert first["flow_head"] + first["flow_crank"] == pytest.approx(first["flow"])
     assert (first["flow_head"][:2] == 0).all()  # the outstroke shrinks the crank end
@@ -159,16 +171,24 @@ def test_a_pump_that_a_lever_drives(ratio: float, second: str) -> None:
     delivery = api.solve(api.loads(file)).delivery
     head, crank = math.pi / 4 * 0.12**2, math.pi / 4 * (0.12**2 - 0.05**2) * bool(second)
 
-    ends = (head, crank) if ratio > 0 else (crank, head)  # against the crosshead the other end delivers
-    swing = by_quadrature([(0.15, 0.7, 0.04, *(0.9 * abs(ratio) * one for one in ends), 0.0)])
+    ends = (
+        (head, crank) if ratio > 0 else (crank, head)
+    )  # against the crosshead the other end delivers
+    swing = by_quadrature([(0.15, 0.7, 0.04, *(0.9 * abs(ratio) * end for end in ends), 0.0)])
     assert delivery.pump
     stroke = math.sqrt(0.85**2 - 0.04**2) - math.sqrt(0.55**2 - 0.04**2)
-    assert delivery.pump["flow_mean"].value == pytest.approx(0.9 * abs(ratio) * sum(ends) * stroke, rel=1e-12)
+    assert delivery.pump["flow_mean"].value == pytest.approx(
+        0.9 * abs(ratio) * sum(ends) * stroke, rel=1e-12
+    )
     assert delivery.pump["volume_fluctuation"].value == pytest.approx(swing, rel=1e-9)
     phi = np.radians([50.0, 130.0, 240.0, 330.0])
     aside = 0.15 * np.sin(phi) - 0.04
-    outward = -0.15 * np.sin(phi) - aside * 0.15 * np.cos(phi) / np.sqrt(0.7**2 - aside**2)  # dx/dφ from the shaft
-    rate = 0.9 * abs(ratio) * np.where(outward > 0, ends[0], ends[1]) * np.abs(outward) * 2 * math.pi
+    outward = -0.15 * np.sin(phi) - aside * 0.15 * np.cos(phi) / np.sqrt(
+        0.7**2 - aside**2
+    )  # dx/dφ from the shaft
+    rate = (
+        0.9 * abs(ratio) * np.where(outward > 0, ends[0], ends[1]) * np.abs(outward) * 2 * math.pi
+    )
     assert delivery.pump.columns(np.degrees(phi), "flow")["flow"] == pytest.approx(rate, rel=1e-12)
 
 
@@ -198,16 +218,22 @@ def test_figures_of_the_ideal_card() -> None:
     assert stage["capacity"].value == pytest.approx(capacity, rel=1e-12)
     mass = 1e5 * capacity * 28.96e-3 / (8.31446261815324 * 308.15)
     assert stage["mass_flow"].value == pytest.approx(mass, rel=1e-12)
-    assert stage["capacity_normal"].value == pytest.approx(capacity / 1.01325 * 273.15 / 308.15, rel=1e-12)
+    assert stage["capacity_normal"].value == pytest.approx(
+        capacity / 1.01325 * 273.15 / 308.15, rel=1e-12
+    )
     ideal = 3.5 * 1e5 * capacity * (4 ** (0.4 / 1.4) - 1)
-    taken = 1.3 / 0.3 * 1e5 * capacity * (4 ** (0.3 / 1.3) - 1)  # of a polytropic card with equal exponents
+    taken = (
+        1.3 / 0.3 * 1e5 * capacity * (4 ** (0.3 / 1.3) - 1)
+    )  # of a polytropic card with equal exponents
     assert stage["isentropic_efficiency"].value == pytest.approx(ideal / taken, rel=1e-12)
 
 
 def test_an_exponent_of_its_own_for_the_expansion() -> None:
     text = ENDS.replace("exponent: 1.3", "exponent: 1.3, expansion_exponent: 1.2")
     (stage,) = api.solve(api.loads(text)).delivery.stages
-    assert stage["volumetric_efficiency"].value == pytest.approx(1 - 0.1 * (4 ** (1 / 1.2) - 1), rel=1e-12)
+    assert stage["volumetric_efficiency"].value == pytest.approx(
+        1 - 0.1 * (4 ** (1 / 1.2) - 1), rel=1e-12
+    )
 
 
 def test_an_unloaded_end_is_not_copied_and_does_no_work() -> None:
@@ -217,7 +243,9 @@ def test_an_unloaded_end_is_not_copied_and_does_no_work() -> None:
     assert crank == pytest.approx(whole.cylinders[0].drive.gas[0].works[1], rel=1e-15)
     (stage,) = case.delivery.stages
     share = (0.32**2 - 0.05**2) / (2 * 0.32**2 - 0.05**2)
-    assert stage["capacity"].value == pytest.approx(share * whole.delivery.stages[0]["capacity"].value, rel=1e-12)
+    assert stage["capacity"].value == pytest.approx(
+        share * whole.delivery.stages[0]["capacity"].value, rel=1e-12
+    )
     assert case.cylinders[0].at([10.0, 200.0]).p_head == pytest.approx([1e5, 1e5])
 
 

@@ -51,7 +51,9 @@ def named(page: Path) -> str:
 
 
 PAGES_WITH_COMMANDS = [
-    pytest.param(page, marks=marked(page), id=named(page)) for page in [README, *PAGES] if COMMAND.search(text_of(page))
+    pytest.param(page, marks=marked(page), id=named(page))
+    for page in [README, *PAGES]
+    if COMMAND.search(text_of(page))
 ]
 
 
@@ -94,7 +96,10 @@ def output_of(command: str, folder: Path) -> str:
             return ran.output
         line, given, heard = rest, ran.stdout_bytes, ran.stderr
     environment = {k: v for k, v in os.environ.items() if k not in ("FORCE_COLOR", "COLUMNS")}
-    environment |= {"PATH": f"{folder / 'bin'}{os.pathsep}{environment['PATH']}", "PYTHONIOENCODING": "utf-8"}
+    environment |= {
+        "PATH": f"{folder / 'bin'}{os.pathsep}{environment['PATH']}",
+        "PYTHONIOENCODING": "utf-8",
+    }
     done = subprocess.run(
         ["bash", "-c", line],
         cwd=folder,
@@ -142,7 +147,9 @@ def wording(line: str) -> str:
 
 @pytest.mark.skipif(NO_SHELL, reason="the pages speak to a shell")
 @pytest.mark.parametrize("page", PAGES_WITH_COMMANDS)
-def test_commands_of_a_page(page: Path, workshop: Callable[[Path], Path], kept: Callable[[Path, str], str]) -> None:
+def test_commands_of_a_page(
+    page: Path, workshop: Callable[[Path], Path], kept: Callable[[Path, str], str]
+) -> None:
     """All in their order: a command may read what one before it has written."""
     text = now = text_of(page)
     for command, printed in COMMAND.findall(text):
@@ -155,7 +162,9 @@ def test_commands_of_a_page(page: Path, workshop: Callable[[Path], Path], kept: 
 PYTHON = [page for page in [README, *PAGES] if ">>>" in text_of(page)]
 
 
-@pytest.mark.parametrize("page", [pytest.param(page, marks=marked(page), id=named(page)) for page in PYTHON])
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, marks=marked(page), id=named(page)) for page in PYTHON]
+)
 def test_python_of_a_page(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     found = doctest.testfile(str(page), module_relative=False, encoding="utf-8")
@@ -177,7 +186,11 @@ GENERATED = {
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] if name == "machines.md" else []) for name in GENERATED]
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] if name == "machines.md" else [])
+        for name in GENERATED
+    ],
 )
 def test_a_generated_page_is_current(name: str, kept: Callable[[Path, str], str]) -> None:
     text = GENERATED[name]()
@@ -191,7 +204,11 @@ def test_the_page_of_validation_has_every_example() -> None:
 
 def test_no_page_begins_with_a_note_for_its_makers() -> None:
     begins = {named(page): text_of(page)[:500] for page in PAGES}
-    assert [page for page, text in begins.items() if re.search(r"pytest|edit by hand|writes this page", text)] == []
+    assert [
+        page
+        for page, text in begins.items()
+        if re.search(r"pytest|edit by hand|writes this page", text)
+    ] == []
 
 
 # links of the pages beside the site (README and its like) lead to files and headings that there are
@@ -211,7 +228,9 @@ def links_of(page: Path) -> list[tuple[str, str]]:
 
 def anchors_of(page: Path) -> set[str]:
     headings = re.findall(r"^#+ (.*)$", prose_of(page), re.MULTILINE)
-    return {re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", heading).strip().lower()) for heading in headings}
+    return {
+        re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", heading).strip().lower()) for heading in headings
+    }
 
 
 @pytest.mark.parametrize("page", BESIDE, ids=lambda page: page.name)

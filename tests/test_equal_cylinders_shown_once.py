@@ -39,7 +39,10 @@ def test_check_tells_equal_ones_once_and_each_of_their_cranks() -> None:
     assert page.count("left out   weight: no inclination given") == 1
     assert "\ncylinders 1–4\n" in page
     lines = page.split("\nCranks\n")[1].split("\n\n")[0].splitlines()
-    assert lines == [f"  cylinder {n}  {at} deg after the first" for n, at in ((1, 0), (2, 540), (3, 180), (4, 360))]
+    assert lines == [
+        f"  cylinder {n}  {at} deg after the first"
+        for n, at in ((1, 0), (2, 540), (3, 180), (4, 360))
+    ]
     assert "Cranks" not in printed("check", str(CONFIGS["waterworks"]))
 
 
@@ -57,7 +60,9 @@ def test_one_that_differs_stands_alone() -> None:
 
 def pins(bank: int) -> dict[str, int]:
     page = printed("check", "-", text=V8.format(bank=bank)).split("\nCranks\n")[1].split("\n\n")[0]
-    return {line[2:12]: int(line.rpartition(": crank pin ")[2].split()[0]) for line in page.splitlines()}
+    return {
+        line[2:12]: int(line.rpartition(": crank pin ")[2].split()[0]) for line in page.splitlines()
+    }
 
 
 def test_check_tells_where_a_firing_order_puts_the_pins() -> None:

@@ -19,16 +19,24 @@ FITS: dict[str, Callable[[Machine], bool]] = {
     "flywheel": lambda machine: True,
     "stress": lambda machine: machine.crankshaft is not None,
     "balance": lambda machine: (
-        any(one.masses for one in machine.cylinders)
-        and not any(one.mechanism.quick_return for one in machine.cylinders)
+        any(cylinder.masses for cylinder in machine.cylinders)
+        and not any(cylinder.mechanism.quick_return for cylinder in machine.cylinders)
     ),
 }
 
 
 EACH = [(command, path) for command in FITS if command in COMMANDS for path in SHIPPED]
 FEW = [
-    *(("check", name) for name in ("waterworks", "punch", "marine-diesel", "coupled-axle", "scotch-yoke-pump")),
-    *(("motion", "shaper"), ("forces", "crank-rocker"), ("flywheel", "waterworks"), ("stress", "gas-engine")),
+    *(
+        ("check", name)
+        for name in ("waterworks", "punch", "marine-diesel", "coupled-axle", "scotch-yoke-pump")
+    ),
+    *(
+        ("motion", "shaper"),
+        ("forces", "crank-rocker"),
+        ("flywheel", "waterworks"),
+        ("stress", "gas-engine"),
+    ),
     ("balance", "locomotive"),
 ]
 

@@ -67,7 +67,9 @@ masses: {piston: 100 kg, connecting_rod: {mass: 65 kg, center_of_gravity: 0.2 m,
 def advised(text: str, message: str) -> str:
     """The machine with the flywheel that the message advises."""
     return re.sub(
-        r"flywheel: {.*}", f"flywheel: {{inertia: {message.partition('from J = ')[2].split()[0]} kg m2}}", text
+        r"flywheel: {.*}",
+        f"flywheel: {{inertia: {message.partition('from J = ')[2].split()[0]} kg m2}}",
+        text,
     )
 
 
@@ -87,7 +89,9 @@ def test_a_resonance_is_told() -> None:
     coupling = "{stiffness: 1e6 N m/rad, inertia: 3000 kg m2, damping: 100 N m s/rad}"
     text = f"{ENGINE}flywheel: {{inertia: 20 t m2}}\ncoupling: {coupling}\n"
     assert "harmonic 4 of the torque" in warnings(text)
-    assert {"natural_order", "M_coupling_max", "M_coupling_min", "amplification"} <= values(text).keys()
+    assert {"natural_order", "M_coupling_max", "M_coupling_min", "amplification"} <= values(
+        text
+    ).keys()
     undamped = text.replace(", damping: 100 N m s/rad", "")
     order = values(undamped)["natural_order"]
     tuned = undamped.replace("1e6", f"{1e6 * (4 / order) ** 2!r}")
@@ -98,7 +102,9 @@ def test_the_warning_of_a_missed_wish_names_the_flywheel_that_meets_it() -> None
     text = ENGINE + "flywheel: {fluctuation: 0.1}\n"
     exact = values(text)["J_exact"]
     assert f"J = {exact:.6g} kg m^2 gives the wanted one" in warnings(text)
-    assert values(text.replace("fluctuation: 0.1", f"inertia: {exact!r} kg m2"))["delta"] == pytest.approx(0.1)
+    assert values(text.replace("fluctuation: 0.1", f"inertia: {exact!r} kg m2"))[
+        "delta"
+    ] == pytest.approx(0.1)
     both = values(text.replace("fluctuation", "inertia: 9000 kg m2, fluctuation"))
     assert both["J_exact"] == pytest.approx(exact, rel=1e-12)
 
@@ -115,7 +121,9 @@ flywheel: {{inertia: {J} kg m2}}
 
 
 def angles_of(condition: str) -> list[float]:
-    found: list[float] = answer("flywheel", "--where", condition, "-", text=HARMONIC)["machine_columns"][0]["values"]
+    found: list[float] = answer("flywheel", "--where", condition, "-", text=HARMONIC)[
+        "machine_columns"
+    ][0]["values"]
     return found
 
 

@@ -33,7 +33,9 @@ def test_demo_machine_of_the_contract() -> None:
 
 
 def test_key_values_do_not_depend_on_the_step() -> None:
-    first, second = (cylinder(answer("forces", WATERWORKS, "--step", step)) for step in ("10", "0.7"))
+    first, second = (
+        cylinder(answer("forces", WATERWORKS, "--step", step)) for step in ("10", "0.7")
+    )
     assert first["key_values"] == second["key_values"]
 
 

@@ -12,7 +12,16 @@ pytestmark = pytest.mark.usefixtures("solved_once")
 
 
 def answer(incline: float, coefficient: float, *words: str) -> dict[str, Any]:
-    found = run("friction", "--incline", str(incline), "--coefficient", str(coefficient), *words, "-f", "json")
+    found = run(
+        "friction",
+        "--incline",
+        str(incline),
+        "--coefficient",
+        str(coefficient),
+        *words,
+        "-f",
+        "json",
+    )
     assert found.exit_code == 0, found.output
     return json.loads(found.stdout)
 
@@ -29,8 +38,12 @@ def test_level_force_is_the_tangent_of_both_angles() -> None:
     assert [column["symbol"] for column in table["columns"]] == ["P/Q", "P_1/Q"]
     found = forces(answer(30, 0.1))
     alpha = math.radians(30)
-    assert found["P_up"] == pytest.approx([0.5 + 0.1 * math.cos(alpha), math.tan(alpha + rho)], rel=1e-14)
-    assert found["P_held"] == pytest.approx([0.5 - 0.1 * math.cos(alpha), math.tan(alpha - rho)], rel=1e-14)
+    assert found["P_up"] == pytest.approx(
+        [0.5 + 0.1 * math.cos(alpha), math.tan(alpha + rho)], rel=1e-14
+    )
+    assert found["P_held"] == pytest.approx(
+        [0.5 - 0.1 * math.cos(alpha), math.tan(alpha - rho)], rel=1e-14
+    )
 
 
 @pytest.mark.parametrize("direction", [-20.0, 10.0, 45.0])
@@ -42,7 +55,9 @@ def test_statics_of_the_body(direction: float) -> None:
         force = found[id][0]
         pressing = math.cos(alpha) - force * math.sin(beta)
         assert pressing > 0
-        assert force * math.cos(beta) == pytest.approx(math.sin(alpha) + friction * pressing, rel=1e-13)
+        assert force * math.cos(beta) == pytest.approx(
+            math.sin(alpha) + friction * pressing, rel=1e-13
+        )
 
 
 def test_limits() -> None:

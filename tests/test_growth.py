@@ -37,7 +37,9 @@ def traced(samples: int, noise: float = 0.0) -> str:
     return "m.yaml"
 
 
-def per_sample(command: Callable[[str], tuple[str, ...]], machine: Callable[[int], str], few: int, many: int) -> float:
+def per_sample(
+    command: Callable[[str], tuple[str, ...]], machine: Callable[[int], str], few: int, many: int
+) -> float:
     """Calls of a command for each further sample."""
     printed(*command(machine(few)))
     counted = [calls(*command(machine(samples))) for samples in (few, many)]
@@ -55,4 +57,7 @@ def test_check_takes_the_samples_of_a_file_together(noise: float) -> None:
 
 def test_a_picture_has_no_piece_for_every_crossing_in_the_noise() -> None:
     """A picture of 1000 dots across shows no more than it has dots, whatever crosses between them."""
-    assert per_sample(lambda file: ("plot", file, "-o", "m.svg"), lambda n: traced(n, 3.0), 1000, 2000) < 5
+    assert (
+        per_sample(lambda file: ("plot", file, "-o", "m.svg"), lambda n: traced(n, 3.0), 1000, 2000)
+        < 5
+    )

@@ -41,20 +41,30 @@ def test_the_same_values_as_among_all_in_every_format() -> None:
     (every,) = answer("forces", WATERWORKS, "--key-values")["cylinders"]
     (chosen,) = answer("forces", WATERWORKS, "--key-values", "N_max P_b,max")["cylinders"]
     assert chosen["key_values"] == [
-        value for id in ("N_max", "P_inertia_max") for value in every["key_values"] if value["id"] == id
+        value
+        for id in ("N_max", "P_inertia_max")
+        for value in every["key_values"]
+        if value["id"] == id
     ]
     csv = printed("forces", WATERWORKS, "--key-values", "N_max P_b,max", "-f", "csv").splitlines()
     assert [line.split(",")[0] for line in csv] == ["key_value", "N_max", "P_inertia_max"]
     assert float(csv[1].split(",")[2]) == chosen["key_values"][0]["value"]
-    markdown = printed("forces", WATERWORKS, "--key-values", "N_max P_b,max", "-f", "markdown").splitlines()
-    assert [line.split(" | ")[0] for line in markdown if line.startswith("| ")][2:] == ["| N\\_max", "| P\\_b,max"]
+    markdown = printed(
+        "forces", WATERWORKS, "--key-values", "N_max P_b,max", "-f", "markdown"
+    ).splitlines()
+    assert [line.split(" | ")[0] for line in markdown if line.startswith("| ")][2:] == [
+        "| N\\_max",
+        "| P\\_b,max",
+    ]
     text = printed("forces", WATERWORKS, "--key-values", "N_max P_b,max").splitlines()
     assert [line.split()[0] for line in text[3:]] == ["N_max", "P_b,max"]
 
 
 def test_a_scope_means_one_part() -> None:
-    cylinders = answer("forces", TWO_STAGES, "--key-values", "high pressure.T_max,c_max")["cylinders"]
-    assert {one["name"]: ids_of(one) for one in cylinders} == {
+    cylinders = answer("forces", TWO_STAGES, "--key-values", "high pressure.T_max,c_max")[
+        "cylinders"
+    ]
+    assert {cylinder["name"]: ids_of(cylinder) for cylinder in cylinders} == {
         "low pressure": ["c_max"],
         "high pressure": ["T_max", "c_max"],
     }
@@ -96,7 +106,9 @@ def test_a_key_value_that_is_printed_on_request_only() -> None:
 
 def test_of_load_cases_and_of_uncertainties_these_only() -> None:
     cases = json.loads(
-        run("forces", "-", "--cases", "--key-values", "N_max", "-f", "json", text=WITH_CASES).stdout,
+        run(
+            "forces", "-", "--cases", "--key-values", "N_max", "-f", "json", text=WITH_CASES
+        ).stdout,
     )
     (table,) = cases["cylinders"][0]["place_tables"]
     assert [column["id"] for column in table["columns"]] == ["N_max"]

@@ -30,7 +30,10 @@ def completed(words: str) -> list[str]:
         ("kurbel forces engine.yaml --set bore=4", []),
         ("kurbel forces engine.yaml --cylinder ", []),
         ("kurbel keys indicator.head_end.trace.sk", ["indicator.head_end.trace.skip_rows"]),
-        ("kurbel forces engine.yaml --set masses.connecting_rod.s", ["masses.connecting_rod.share="]),
+        (
+            "kurbel forces engine.yaml --set masses.connecting_rod.s",
+            ["masses.connecting_rod.share="],
+        ),
         ("kurbel sweep engine.yaml --vary masses.cro", ["masses.crosshead="]),
         ("kurbel sweep engine.yaml --columns c_m,T_ma", ["c_m,T_max"]),
         ("kurbel sweep engine.yaml --sort T_mi", ["T_min"]),

@@ -41,7 +41,9 @@ def test_a_case_is_the_file_with_its_values(pump: Path) -> None:
 
 
 def test_check_tells_the_faults_of_every_case(pump: Path) -> None:
-    pump.write_text(PUMP.replace("80 rpm", "-80 rpm").replace("1.5 bar", "1.5 bra"), encoding="utf-8")
+    pump.write_text(
+        PUMP.replace("80 rpm", "-80 rpm").replace("1.5 bar", "1.5 bra"), encoding="utf-8"
+    )
     found = json.loads(run("check", pump, "-f", "json").stdout)["findings"]
     key = "indicator.head_end.constant.compression"
     assert [one["line"] for one in found] == [8, 11]
@@ -49,13 +51,47 @@ def test_check_tells_the_faults_of_every_case(pump: Path) -> None:
 
 
 def test_set_stands_over_the_case_and_vary_over_both(pump: Path) -> None:
-    set_over = run("motion", pump, "--case", "full speed", "--set", "speed=100 rpm", "--key-values", "-f", "json")
-    found = run("sweep", pump, "--case", "full speed", "--vary", "rod=2 m", "--columns", "c_max", "-f", "csv")
-    varied = run("sweep", pump, "--case", "full speed", "--vary", "speed=100 rpm", "--columns", "c_max", "-f", "csv")
+    set_over = run(
+        "motion",
+        pump,
+        "--case",
+        "full speed",
+        "--set",
+        "speed=100 rpm",
+        "--key-values",
+        "-f",
+        "json",
+    )
+    found = run(
+        "sweep",
+        pump,
+        "--case",
+        "full speed",
+        "--vary",
+        "rod=2 m",
+        "--columns",
+        "c_max",
+        "-f",
+        "csv",
+    )
+    varied = run(
+        "sweep",
+        pump,
+        "--case",
+        "full speed",
+        "--vary",
+        "speed=100 rpm",
+        "--columns",
+        "c_max",
+        "-f",
+        "csv",
+    )
     key_values = json.loads(set_over.stdout)["cylinders"][0]["key_values"]
-    of_set = next(one["value"] for one in key_values if one["id"] == "c_max")
+    of_set = next(key_value["value"] for key_value in key_values if key_value["id"] == "c_max")
     assert float(varied.stdout.splitlines()[1].split(",")[2]) == pytest.approx(of_set, rel=1e-15)
-    assert float(found.stdout.splitlines()[1].split(",")[2]) == pytest.approx(0.8 * of_set, rel=1e-14)
+    assert float(found.stdout.splitlines()[1].split(",")[2]) == pytest.approx(
+        0.8 * of_set, rel=1e-14
+    )
 
 
 def test_check_holds_the_limits_in_every_case(pump: Path) -> None:
@@ -72,7 +108,9 @@ def test_check_holds_the_limits_in_every_case(pump: Path) -> None:
 
 
 def test_a_sweep_has_a_row_for_each_case(pump: Path) -> None:
-    result = run("sweep", pump, "--cases", "--vary", "rod=2,0.3,3 m", "--columns", "c_max", "-f", "csv")
+    result = run(
+        "sweep", pump, "--cases", "--vary", "rod=2,0.3,3 m", "--columns", "c_max", "-f", "csv"
+    )
     rows = [line.split(",") for line in result.stdout.splitlines()]
     assert rows[0][:3] == ["row", "case", "rod_m"]
     assert [row[1] for row in rows[1:]] == ["full speed"] * 3 + ["half the pressure"] * 3

@@ -63,7 +63,9 @@ def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) ->
     (whole,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     (tmp_path / "toy_mechanism.py").write_text(whole, encoding="utf-8")
     machine = tmp_path / "cam.yaml"
-    machine.write_text("speed: 60 rpm\nmechanism: harmonic-cam\ncrank: 20 mm\nsecond: 2 mm\nram_force: {work: 1 kN}\n")
+    machine.write_text(
+        "speed: 60 rpm\nmechanism: harmonic-cam\ncrank: 20 mm\nsecond: 2 mm\nram_force: {work: 1 kN}\n"
+    )
     code = (
         "import sys\nfrom kurbel.declared.forms.structures import RecordForm\n"
         "from kurbel.mechanisms.kinds import MECHANISMS\n"
@@ -78,7 +80,9 @@ def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) ->
     path = os.pathsep.join((str(tmp_path), os.environ.get("PYTHONPATH", "")))
     environment = os.environ | {"PYTHONPATH": path, "PYTHONIOENCODING": "utf-8"}
     arguments = [sys.executable, "-c", code, str(machine), "-f", "json", "--angles", "0,90"]
-    done = subprocess.run(arguments, capture_output=True, env=environment, check=False, encoding="utf-8")
+    done = subprocess.run(
+        arguments, capture_output=True, env=environment, check=False, encoding="utf-8"
+    )
     assert done.returncode == 0, done.stderr
     motion, forces = (json.loads(printed) for printed in done.stdout.split("\0")[:2])
     columns, key_values = only_part(motion)

@@ -18,10 +18,23 @@ def table(found: dict[str, Any], id: str) -> dict[str, list[Any]]:
 
 def test_the_columns_that_scripts_rely_on() -> None:
     orders = table(answer("harmonics", BLOWER), "orders")
-    assert list(orders) == ["order", "M_cos", "M_sin", "M_amplitude", "M_phase", "M_gas", "M_inertia"]
+    assert list(orders) == [
+        "order",
+        "M_cos",
+        "M_sin",
+        "M_amplitude",
+        "M_phase",
+        "M_gas",
+        "M_inertia",
+    ]
     assert orders["order"] == list(range(1, 25))
     found = answer("torsion", SHIP)
-    assert [one["id"] for one in found["machine_place_tables"]] == ["modes", "holzer", "critical_speeds", "pieces"]
+    assert [one["id"] for one in found["machine_place_tables"]] == [
+        "modes",
+        "holzer",
+        "critical_speeds",
+        "pieces",
+    ]
     modes, critical = table(found, "modes"), table(found, "critical_speeds")
     assert list(modes)[:2] == ["mode", "frequency"]
     assert list(critical)[:3] == ["order", "mode", "speed"]
@@ -36,12 +49,16 @@ def test_half_orders_of_four_strokes() -> None:
     found = answer("harmonics", str(CONFIGS["four-cylinder-generator"]))
     assert table(found, "orders")["order"] == [half / 2 for half in range(1, 49)]
     marks = found["machine_place_tables"][0]["rows"]
-    assert [index / 2 + 0.5 for index, mark in enumerate(marks) if mark["kind"] == "major"] == list(range(2, 25, 2))
+    assert [index / 2 + 0.5 for index, mark in enumerate(marks) if mark["kind"] == "major"] == list(
+        range(2, 25, 2)
+    )
     assert len(found["cylinders"]) == 4
 
 
 def test_orders_over_the_speed() -> None:
-    found = table(answer("harmonics", BLOWER, "--speeds", "75, 150 rpm", "--orders", "1,3"), "orders_by_speed")
+    found = table(
+        answer("harmonics", BLOWER, "--speeds", "75, 150 rpm", "--orders", "1,3"), "orders_by_speed"
+    )
     assert (found["speed"], found["order"]) == ([1.25, 1.25, 2.5, 2.5], [1, 3, 1, 3])
     slow = table(answer("harmonics", BLOWER, "--set", "speed=75 rpm", "--orders", "1,3"), "orders")
     assert found["M_cos"][:2] == pytest.approx(slow["M_cos"], rel=1e-12)

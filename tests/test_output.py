@@ -30,12 +30,21 @@ def links(folder: Path) -> Iterator[str]:
     machine = folder / "m.yaml"
     (folder / "soft.yaml").symlink_to(machine)
     (folder / "hard.yaml").hardlink_to(machine)
-    yield from (str(machine), "m.yaml", "./m.yaml", f"../{folder.name}/m.yaml", "soft.yaml", "hard.yaml")
+    yield from (
+        str(machine),
+        "m.yaml",
+        "./m.yaml",
+        f"../{folder.name}/m.yaml",
+        "soft.yaml",
+        "hard.yaml",
+    )
 
 
 @POSIX_ONLY
 @pytest.mark.parametrize("command", ["motion", "forces", "flywheel"])
-def test_the_machine_file_is_never_written_over(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_machine_file_is_never_written_over(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     text = MACHINE + PRESSURE
     (tmp_path / "m.yaml").write_text(text)
     monkeypatch.chdir(tmp_path)
@@ -48,7 +57,9 @@ def test_the_machine_file_is_never_written_over(command: str, tmp_path: Path, mo
 def test_no_trace_that_is_read_is_written_over(tmp_path: Path) -> None:
     trace = "".join(f"{angle},{1 + angle / 720}\n" for angle in range(0, 361, 10))
     (tmp_path / "p.csv").write_text(trace)
-    (tmp_path / "m.yaml").write_text(MACHINE + "indicator: {head_end: {trace: {file: p.csv, unit: bar}}}\n")
+    (tmp_path / "m.yaml").write_text(
+        MACHINE + "indicator: {head_end: {trace: {file: p.csv, unit: bar}}}\n"
+    )
     for command in ("forces", "accuracy"):
         result = run(command, tmp_path / "m.yaml", "-o", tmp_path / "p.csv")
         assert (result.exit_code, (tmp_path / "p.csv").read_text()) == (2, trace)
@@ -88,7 +99,17 @@ def test_a_full_disk_leaves_the_old_file_whole(tmp_path: Path) -> None:
     )
     (tmp_path / "out.csv").write_text("old")
     # -B: under such a limit Python would leave its compiled modules torn behind
-    arguments = [sys.executable, "-B", "-c", limited, "table", "-f", "csv", "-o", str(tmp_path / "out.csv")]
+    arguments = [
+        sys.executable,
+        "-B",
+        "-c",
+        limited,
+        "table",
+        "-f",
+        "csv",
+        "-o",
+        str(tmp_path / "out.csv"),
+    ]
     result = subprocess.run(arguments, capture_output=True, check=False)
     assert (result.returncode, b"cannot write" in result.stderr) == (2, True)
     assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("out.csv", "old")]
@@ -101,11 +122,16 @@ def test_a_replaced_file_keeps_its_mode_and_a_link_stays_one(tmp_path: Path) -> 
     target.chmod(0o640)
     link.symlink_to(target)
     write_out(("new",), str(link))
-    assert (target.read_text(), target.stat().st_mode & 0o777, link.is_symlink()) == ("new", 0o640, True)
+    assert (target.read_text(), target.stat().st_mode & 0o777, link.is_symlink()) == (
+        "new",
+        0o640,
+        True,
+    )
 
 
 @pytest.mark.parametrize(
-    ("name", "begin"), [("o.csv", "phi_deg"), ("o.JSON", "{"), ("o.md", "# "), ("o.txt", "m. Mot"), ("o", "m. Mot")]
+    ("name", "begin"),
+    [("o.csv", "phi_deg"), ("o.JSON", "{"), ("o.md", "# "), ("o.txt", "m. Mot"), ("o", "m. Mot")],
 )
 def test_the_suffix_says_the_format(name: str, begin: str, tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(MACHINE)
@@ -113,7 +139,12 @@ def test_the_suffix_says_the_format(name: str, begin: str, tmp_path: Path) -> No
         result = run(*arguments, "-o", tmp_path / name)
         assert (result.exit_code, result.output) == (0, "")
         if arguments[0] == "motion":
-            assert (tmp_path / name).read_text(encoding="utf-8").lstrip("#*").startswith(begin.lstrip("# "))
+            assert (
+                (tmp_path / name)
+                .read_text(encoding="utf-8")
+                .lstrip("#*")
+                .startswith(begin.lstrip("# "))
+            )
 
 
 def test_a_format_that_contradicts_the_suffix_is_refused(tmp_path: Path) -> None:
@@ -143,7 +174,9 @@ def test_json_says_what_it_was_made_from(tmp_path: Path) -> None:
         assert parsed["overrides"] == []
         assert parsed["versions"] == {"kurbel": parsed["kurbel"], "numpy": np.__version__}
     parsed = json.loads(run("motion", "-", "-f", "json", text=MACHINE).stdout)
-    assert parsed["inputs"] == [{"file": "<stdin>", "sha256": hashlib.sha256(MACHINE.encode()).hexdigest()}]
+    assert parsed["inputs"] == [
+        {"file": "<stdin>", "sha256": hashlib.sha256(MACHINE.encode()).hexdigest()}
+    ]
 
 
 # statuses
@@ -161,11 +194,16 @@ UNHEARD = [(*end, stderr) for stderr in ("2>/dev/full", "2>&-") for end in ENDS]
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 @pytest.mark.parametrize(("arguments", "status", "stderr"), few(UNHEARD, UNHEARD[::2]))
-def test_no_status_hangs_on_standard_error(arguments: str, status: int, stderr: str, tmp_path: Path) -> None:
+def test_no_status_hangs_on_standard_error(
+    arguments: str, status: int, stderr: str, tmp_path: Path
+) -> None:
     (tmp_path / "m.yaml").write_text("crank: 400\n")
     (tmp_path / "stalls.yaml").write_text(MACHINE + PRESSURE + "flywheel: {inertia: 1e-3 kg m2}\n")
     command = f"{sys.executable} -m kurbel {arguments} {stderr}"
-    assert subprocess.run(["bash", "-c", command], cwd=tmp_path, check=False, stdout=-3).returncode == status
+    assert (
+        subprocess.run(["bash", "-c", command], cwd=tmp_path, check=False, stdout=-3).returncode
+        == status
+    )
 
 
 # long tables
@@ -173,7 +211,9 @@ def test_no_status_hangs_on_standard_error(arguments: str, status: int, stderr: 
 
 def test_too_many_rows_are_refused_before_anything_is_computed() -> None:
     check_rows(MOST_ROWS, 1)
-    with pytest.raises(UsageError, match=f"800000 crank angles for each of 2 give more than {MOST_ROWS} rows"):
+    with pytest.raises(
+        UsageError, match=f"800000 crank angles for each of 2 give more than {MOST_ROWS} rows"
+    ):
         check_rows(800_000, 2)
     for step, parts in ((1e-320, 1), (0.0001, 1), (0.0004, 2)):
         with pytest.raises(UsageError, match="take a larger --step"):

@@ -33,9 +33,20 @@ def installed(folder: Path, *what: object) -> Path:
     """Install into a new virtual environment, which sees the dependencies of this one; return its python."""
     run(sys.executable, "-m", "venv", "--without-pip", folder / "venv", folder=folder)
     python = folder / "venv" / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    own = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", folder=folder).strip()
+    own = run(
+        python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", folder=folder
+    ).strip()
     Path(own, "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
-    pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--disable-pip-version-check")
+    pip = (
+        sys.executable,
+        "-m",
+        "pip",
+        "--python",
+        python,
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+    )
     # an environment of its own for every build is fetched anew each time; .ci/run builds in one. A kurbel among the
     # dependencies is not the one that is meant
     run(*pip, "--no-build-isolation", "--no-deps", "--ignore-installed", *what, folder=folder)
@@ -65,11 +76,19 @@ def test_no_file_is_a_symbolic_link() -> None:
 @pytest.mark.slow
 def test_wheel_and_sdist_hold_every_file_once(tmp_path: Path) -> None:
     """The wheel is built from the sdist, as installers do where there is no wheel."""
-    run(sys.executable, "-m", "build", "--no-isolation", "--outdir", tmp_path, ROOT, folder=tmp_path)
+    run(
+        sys.executable, "-m", "build", "--no-isolation", "--outdir", tmp_path, ROOT, folder=tmp_path
+    )
     (wheel,), (sdist,) = tmp_path.glob("*.whl"), tmp_path.glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         held = [name.partition("/")[2] for name in archive.getnames()]
-    for name in ("README.md", "CHANGELOG.md", "LICENSE", "pyproject.toml", "tests/test_packaging.py"):
+    for name in (
+        "README.md",
+        "CHANGELOG.md",
+        "LICENSE",
+        "pyproject.toml",
+        "tests/test_packaging.py",
+    ):
         assert held.count(name) == 1
     for folder in ("docs", "benchmarks", "tests", "src", "configs"):
         there = [f"{folder}/{path.name}" for path in (ROOT / folder).iterdir() if path.is_file()]

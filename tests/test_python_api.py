@@ -60,7 +60,11 @@ def same(found: Any, told: dict[str, Any]) -> None:
 def test_key_values_by_id_by_symbol_and_as_attributes(command: str, machine: str) -> None:
     case, parsed = solved(machine), printed(command, machine, "--key-values")
     results = case.cylinders[0] if command == "forces" else getattr(case, command)
-    told = parsed["cylinders"][0]["key_values"] if command == "forces" else parsed["machine_key_values"]
+    told = (
+        parsed["cylinders"][0]["key_values"]
+        if command == "forces"
+        else parsed["machine_key_values"]
+    )
     assert set(results.key_values()) >= {one["id"] for one in told}
     for one in told:
         same(results[one["id"]], one)
@@ -78,8 +82,15 @@ def test_machines_made_and_changed() -> None:
     faster = kurbel.load(file, ["speed=100 rpm"])
     assert faster.speed == 2 * kurbel.load(file).speed
     assert isinstance(faster, kurbel.Machine)
-    assert kurbel.loads("{crank: 1 m, rod: 5 m}", overrides=["crank=2 m"]).cylinders[0].mechanism.stroke == 4.0
-    built = kurbel.Machine((kurbel.Cylinder(kurbel.SliderCrank(crank=0.4, rod=2.0), pistons=(kurbel.Piston(0.45),)),))
+    assert (
+        kurbel.loads("{crank: 1 m, rod: 5 m}", overrides=["crank=2 m"])
+        .cylinders[0]
+        .mechanism.stroke
+        == 4.0
+    )
+    built = kurbel.Machine(
+        (kurbel.Cylinder(kurbel.SliderCrank(crank=0.4, rod=2.0), pistons=(kurbel.Piston(0.45),)),)
+    )
     assert isinstance(built.cylinders[0].mechanism, kurbel.Mechanism)
     assert kurbel.solve(built)["stroke"].value == 0.8
     with pytest.raises(kurbel.KurbelError):
@@ -93,7 +104,10 @@ def test_what_a_notebook_shows(tmp_path: Path) -> None:
         assert repr(shown).startswith("<kurbel ")
     drawing = kurbel.draw(case, "effort")
     assert drawing._repr_svg_().startswith("<svg")
-    assert [mark.figure.name.symbol for mark in drawing.pictures[0].panels[0].marks] == ["T_max", "T_min"]
+    assert [mark.figure.name.symbol for mark in drawing.pictures[0].panels[0].marks] == [
+        "T_max",
+        "T_min",
+    ]
     drawing.save(str(tmp_path / "effort.svg"))
     assert (tmp_path / "effort.svg").read_text(encoding="utf-8").lstrip().startswith("<")
     assert len(kurbel.draw(case, "mechanism", angles=(30.0,), units="si").pictures) == 1
@@ -102,11 +116,17 @@ def test_what_a_notebook_shows(tmp_path: Path) -> None:
 # results by name
 
 PLAIN = "{speed: 60 rpm, crank: 400 mm, rod: 2 m, masses: {piston: 100 kg}%s}"
-PRESSURE = ", bore: 450 mm, indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}"
+PRESSURE = (
+    ", bore: 450 mm, indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}"
+)
 
 
 @pytest.mark.parametrize(
-    ("name", "told"), [("T_mx", "no key value 'T_mx'; did you mean 'T_max'"), ("e_K", "this machine has no loss_cross")]
+    ("name", "told"),
+    [
+        ("T_mx", "no key value 'T_mx'; did you mean 'T_max'"),
+        ("e_K", "this machine has no loss_cross"),
+    ],
 )
 def test_a_name_that_is_not_there_is_told(name: str, told: str) -> None:
     (cylinder,) = kurbel.solve(kurbel.loads(PLAIN % PRESSURE)).cylinders
@@ -144,7 +164,9 @@ def test_notebooks_show_tables_that_are_escaped() -> None:
     page = case._repr_html_()
     assert "<h3>&lt;b&gt;A&amp;B&lt;/b&gt;</h3>" in page
     assert "<b>" not in page
-    assert '<th scope="row">c<sub>max</sub></th><td class="r">2.563</td><td>m/s</td>' in page  # 2π · 0.4 · 1.0198331
+    assert (
+        '<th scope="row">c<sub>max</sub></th><td class="r">2.563</td><td>m/s</td>' in page
+    )  # 2π · 0.4 · 1.0198331
     assert "&lt; 10⁻¹⁴</td>" in page
     locked = kurbel.loads((PLAIN % PRESSURE)[:-1] + ", friction: {crosshead: 20}}")
     assert "<p>" in kurbel.solve(locked).cylinders[0]._repr_html_()
@@ -153,13 +175,20 @@ def test_notebooks_show_tables_that_are_escaped() -> None:
 # a machine as a text or a path, scalars, and how a figure prints
 
 FLAT = "{speed: 60 rpm, stroke: 1 m, rod_ratio: 5}"
-TAKEN = {"a path": WATERWORKS, "a path as a text": str(WATERWORKS), "a text": WATERWORKS.read_text(encoding="utf-8")}
+TAKEN = {
+    "a path": WATERWORKS,
+    "a path as a text": str(WATERWORKS),
+    "a text": WATERWORKS.read_text(encoding="utf-8"),
+}
 
 
 @pytest.mark.parametrize("given", TAKEN)
 @pytest.mark.parametrize("take", [kurbel.solve, kurbel.Case])
 def test_a_machine_may_be_a_text_or_a_path(take: Any, given: str) -> None:
-    assert take(TAKEN[given]).cylinders[0]["T_max"] == kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]["T_max"]
+    assert (
+        take(TAKEN[given]).cylinders[0]["T_max"]
+        == kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]["T_max"]
+    )
 
 
 @pytest.mark.parametrize("speed", [2.0, "120 rpm", np.float64(2)])

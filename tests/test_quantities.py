@@ -6,7 +6,7 @@ from kurbel import loads
 from kurbel.mechanisms import Mechanism
 from kurbel.report.commands import report_of
 from kurbel.solver.case import CHAPTERS
-from kurbel.solver.figures import rows_of
+from kurbel.solver.figures import result_rows
 from kurbel.tables.frame import Frame
 from representative import case_of
 
@@ -16,7 +16,9 @@ pytestmark = pytest.mark.usefixtures("solved_once")
 @pytest.mark.parametrize("missing", ["dead_centres", "coordinate", "slope", "curvature"])
 def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> None:
     members = dict.fromkeys(("dead_centres", "coordinate", "slope", "curvature"))
-    half = type("Half", (Mechanism,), {name: value for name, value in members.items() if name != missing})
+    half = type(
+        "Half", (Mechanism,), {name: value for name, value in members.items() if name != missing}
+    )
     with pytest.raises(TypeError, match=rf"abstract class Half .*{missing}"):
         half()
 
@@ -29,8 +31,8 @@ PRESSURE = "{expansion: 5 bar, compression: 1 bar}"
 
 def test_where_key_values_are_in_groups_every_one_is_in_a_group() -> None:
     """A key value without a heading would be printed below that of another one."""
-    for kind in (one.kind for one in CHAPTERS):
-        headings = {row.quantity.heading for row in rows_of(kind).key_values.values()}
+    for kind in (chapter.kind for chapter in CHAPTERS):
+        headings = {row.quantity.heading for row in result_rows(kind).key_values.values()}
         assert ("" in headings) == (headings == {""}), kind
 
 
@@ -45,16 +47,24 @@ def test_figures_take_printed_symbols() -> None:
     ("command", "name", "part", "units"),
     [
         ("forces", "shaper", 0, {"P_start_max": "kN", "P_start_min": "kN", "P_peak": "kN"}),
-        ("flywheel", "compressor-two-stage", 0, {"E_max": "kJ", "E_min": "kJ", "M_mean": "kN m", "M_max": "kN m"}),
+        (
+            "flywheel",
+            "compressor-two-stage",
+            0,
+            {"E_max": "kJ", "E_min": "kJ", "M_mean": "kN m", "M_max": "kN m"},
+        ),
         ("bearings", "boxer", 1, {"load_max": "kN", "load_min": "kN", "load_mean": "kN"}),
     ],
 )
-def test_the_largest_and_the_smallest_share_a_unit(command: str, name: str, part: int, units: dict[str, str]) -> None:
+def test_the_largest_and_the_smallest_share_a_unit(
+    command: str, name: str, part: int, units: dict[str, str]
+) -> None:
     """P_0,max = 600.0 N stood above P_0,min = −6.000 kN."""
     shown = [
-        report_of(case_of(name), Frame(command, (0.0,), (), system)).all_parts[part] for system in ("metric", "si")
+        report_of(case_of(name), Frame(command, (0.0,), (), system)).all_parts[part]
+        for system in ("metric", "si")
     ]
-    told, in_si = ({one.id: one for one in one.key_values} for one in shown)
+    told, in_si = ({key_value.id: key_value for key_value in one.key_values} for one in shown)
     assert {id: told[id].unit for id in units} == units
     for id in units:
         assert told[id].value * 1000 == pytest.approx(in_si[id].value, rel=1e-15)

@@ -16,7 +16,10 @@ PARTS = Path(__file__).with_name("refused.txt").read_text("utf-8").split("\n# ")
 
 def told(line: str) -> str:
     """Status and message of a line; <<< stands before the text of a machine file, \\x00 for a character."""
-    words = [re.sub(r"\\x(..)", lambda code: chr(int(code[1], 16)), word) for word in shlex.split(line)[2:]]
+    words = [
+        re.sub(r"\\x(..)", lambda code: chr(int(code[1], 16)), word)
+        for word in shlex.split(line)[2:]
+    ]
     text = words.pop() if "<<<" in words else None
     result = run(*[word for word in words if word != "<<<"], text=text)
     assert not re.search("Traceback|\x1b", result.output)
@@ -24,7 +27,10 @@ def told(line: str) -> str:
 
 
 def fits(words: str, found: str) -> bool:
-    return all((one.removeprefix("not: ") in found) != one.startswith("not: ") for one in words.split(" … "))
+    return all(
+        (one.removeprefix("not: ") in found) != one.startswith("not: ")
+        for one in words.split(" … ")
+    )
 
 
 @pytest.mark.parametrize("part", PARTS, ids=[part.partition("\n")[0].strip("# ") for part in PARTS])

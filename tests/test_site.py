@@ -31,7 +31,16 @@ pytestmark = [
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Build the site; --strict makes an error of every link and anchor that leads nowhere."""
     folder = tmp_path_factory.mktemp("site")
-    built = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(folder)]
+    built = [
+        sys.executable,
+        "-m",
+        "mkdocs",
+        "build",
+        "--strict",
+        "--quiet",
+        "--site-dir",
+        str(folder),
+    ]
     subprocess.run(built, cwd=ROOT, check=True)
     return folder
 
@@ -46,24 +55,33 @@ def test_every_key_unit_column_key_value_and_option_is_on_the_site(site: Path) -
     options = [
         option
         for name in COMMANDS
-        for one in kurbel.get_command(click.Context(kurbel), name).params
-        for option in one.opts
-        if isinstance(one, click.Option)
+        for param in kurbel.get_command(click.Context(kurbel), name).params
+        for option in param.opts
+        if isinstance(param, click.Option)
     ]
     there = {
         "reference/keys.html": [path.rpartition(".")[2] for path in every_place()],
         "reference/units.html": units,
-        "reference/columns.html": [one.id for one in quantities.all_columns if one.commands],
-        "reference/key-values.html": [one.id for one in quantities.all_key_values],
+        "reference/columns.html": [
+            column.id for column in quantities.all_columns if column.commands
+        ],
+        "reference/key-values.html": [key_value.id for key_value in quantities.all_key_values],
         "reference/commands.html": [*COMMANDS, *options],
     }
-    missing = {page: [name for name in names if name not in words(site, page)] for page, names in there.items()}
+    missing = {
+        page: [name for name in names if name not in words(site, page)]
+        for page, names in there.items()
+    }
     assert {page: names for page, names in missing.items() if names} == {}
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
 def test_pages_fit_a_telephone(site: Path, tmp_path: Path) -> None:
-    pages = [path.relative_to(site).as_posix() for path in site.rglob("*.html") if path.name != "404.html"]
+    pages = [
+        path.relative_to(site).as_posix()
+        for path in site.rglob("*.html")
+        if path.name != "404.html"
+    ]
     text = HARNESS.replace("PAGES", json.dumps(pages)).replace("WIDTHS", json.dumps(WIDTHS), 1)
     (site / "harness.html").write_text(text, encoding="utf-8")
     with served(site) as address:
@@ -75,7 +93,9 @@ def test_pages_fit_a_telephone(site: Path, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
 @pytest.mark.parametrize("page", ["index.html", "theory.html", "reference/keys.html"])
-def test_a_page_says_nothing_and_asks_for_nothing_from_elsewhere(page: str, site: Path, tmp_path: Path) -> None:
+def test_a_page_says_nothing_and_asks_for_nothing_from_elsewhere(
+    page: str, site: Path, tmp_path: Path
+) -> None:
     with served(site) as address:
         dom, console = dumped(f"{address}/{page}", tmp_path)
     assert "</html>" in dom

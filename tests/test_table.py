@@ -46,7 +46,9 @@ def test_exact_rows_against_the_textbook_formulas(ratio: float, phi: float) -> N
     report = zusammenstellung((ratio,), tuple(ROWS), (phi,), "exact")
     with mpmath.workdps(60):
         for name, expected in textbook(ratio, phi).items():
-            assert values(report, ratio, ROWS[name])[phi] == pytest.approx(float(expected), rel=1e-9, abs=1e-13)
+            assert values(report, ratio, ROWS[name])[phi] == pytest.approx(
+                float(expected), rel=1e-9, abs=1e-13
+            )
 
 
 @given(RATIO, PHI)
@@ -92,7 +94,9 @@ def test_where_c_is_largest(ratio: float, c_max: float, at: float, square: float
         assert figures["c_max_factor"] == pytest.approx(float(there["c"]), rel=1e-13)
         assert figures["x_b_zero"] == pytest.approx(float(there["x"]), rel=1e-13)
     # at the angle of R the crank is square to the rod: their directions are perpendicular
-    crank = complex(math.cos(math.radians(figures["phi_square"])), math.sin(math.radians(figures["phi_square"])))
+    crank = complex(
+        math.cos(math.radians(figures["phi_square"])), math.sin(math.radians(figures["phi_square"]))
+    )
     psi = math.asin(crank.imag / ratio)
     rod = complex(math.cos(psi), -math.sin(psi))
     assert (crank * rod.conjugate()).real == pytest.approx(0, abs=1e-15)
@@ -113,7 +117,9 @@ def test_ratio_written_as_the_books_write_it() -> None:
 def test_comparison_has_three_decimals_as_the_book() -> None:
     printed = run("table", "--compare", "--digits", "7").stdout
     factors = [line.split() for line in printed.splitlines() if line.startswith("L/R = 5 ")]
-    decimals = {len(word.rstrip("*").partition(".")[2]) for line in factors for word in line if "." in word}
+    decimals = {
+        len(word.rstrip("*").partition(".")[2]) for line in factors for word in line if "." in word
+    }
     assert decimals == {3, 5}  # those of angles at seven digits
     assert "cos φ ± R/L cos 2φ" in printed
     assert "sin(φ±ψ)/cos ψ" in printed

@@ -28,7 +28,9 @@ def written(folder: Path, angles: Any, pressures: Any) -> Path:
     return folder / "p.csv"
 
 
-def machine_text(file: Path, keys: str = "", pressures: str = "absolute", cycle: str = "four-stroke") -> str:
+def machine_text(
+    file: Path, keys: str = "", pressures: str = "absolute", cycle: str = "four-stroke"
+) -> str:
     keys = keys if ", unit: " in keys else f", unit: bar{keys}"
     return (
         f"cycle: {cycle}\nspeed: 1500 rpm\nstroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\n"
@@ -38,7 +40,11 @@ def machine_text(file: Path, keys: str = "", pressures: str = "absolute", cycle:
 
 def notes_of(text: str) -> list[str]:
     """All notes on a machine, but for that on the rod load, which every motored engine has."""
-    return [note.text for note in machine_notes(Case(loads(text))) if not note.text.startswith("the rod load")]
+    return [
+        note.text
+        for note in machine_notes(Case(loads(text)))
+        if not note.text.startswith("the rod load")
+    ]
 
 
 @pytest.mark.parametrize("columns", few([[2, 61], [2, 22, 42]], [[2, 61]]))
@@ -51,7 +57,10 @@ def test_good_noisy_cycles_are_not_accused(tmp_path: Path, columns: list[int]) -
         for keys in ("", ", compression_ratio: 15"):
             assert notes_of(machine_text(file, f", pressure_columns: 2-61{keys}", pressures)) == []
             for column in columns:
-                assert notes_of(machine_text(file, f", pressure_column: {column}{keys}", pressures)) == []
+                assert (
+                    notes_of(machine_text(file, f", pressure_column: {column}{keys}", pressures))
+                    == []
+                )
 
 
 def late(degrees: float) -> Any:
@@ -93,9 +102,16 @@ RATIO = ", compression_ratio: 15"
 GOOD: dict[str, tuple[Any, Any, str]] = {
     "motored": (FINE, absolute(MOTORED, FINE), RATIO),
     "two strokes": (FINE[:900], absolute(Engine(two_stroke=True), FINE[:900]), RATIO),
-    "two strokes, motored": (FINE[:900], absolute(MOTORED._replace(two_stroke=True), FINE[:900]), RATIO),
+    "two strokes, motored": (
+        FINE[:900],
+        absolute(MOTORED._replace(two_stroke=True), FINE[:900]),
+        RATIO,
+    ),
     **{f"a loss angle of {off}": (FINE, late(off), RATIO) for off in (-0.7, 0.7)},
-    **{f"ends as another, {one}": (*other_end(*one), "") for one in ((0.0, 0.0), (0.1, -30.0), (1.0, -360.0))},
+    **{
+        f"ends as another, {one}": (*other_end(*one), "")
+        for one in ((0.0, 0.0), (0.1, -30.0), (1.0, -360.0))
+    },
     **{f"shaken {one}": (*shaken(*one), "") for one in ((0, 0.1), (1, 0.5), (2, 0.1), (3, 0.5))},
     **{f"motored, {off} late": (*motored(off), "") for off in (-1.0, -0.5, 0.0)},
     **{f"burning from {begin}": (*burning(begin), "") for begin in (-23.0, -20.0, -17.0, -10.0)},
@@ -114,7 +130,11 @@ def obeyed(note: str, keys: str, pressures: str, cycle: str) -> tuple[str, str, 
     key, value = re.findall(r"'([a-z_]+): ([^'…]+)'", note)[0]
     if key == "pressures":
         return keys, value, cycle
-    return (keys, pressures, value) if key == "cycle" else (f"{keys}, {key}: {value}", pressures, cycle)
+    return (
+        (keys, pressures, value)
+        if key == "cycle"
+        else (f"{keys}, {key}: {value}", pressures, cycle)
+    )
 
 
 def wrong(
@@ -137,14 +157,18 @@ WRONG = {
     "hundred times": wrong(late(0) * 100, "100 times too large", CLEARED),
     "a tenth": wrong(late(0) / 10, "10 times too small"),
     "a tenth, pegged": wrong(late(0) / 10, "10 times too small", ", pegging: ambient"),
-    "no engine in any unit": wrong(late(0) * 10 + 600, "where cylinders peak at 1 to 300 bar: pressures"),
+    "no engine in any unit": wrong(
+        late(0) * 10 + 600, "where cylinders peak at 1 to 300 bar: pressures"
+    ),
     "a tenth, gauge": wrong(SUNK / 10, "10 times too small", pressures="gauge"),
     "backward": wrong(absolute(ENGINE, -FINE), "does its angle count against the rotation?"),
     "on its head": wrong(-SUNK, "is it inverted? write 'scale: -1'", pressures="gauge"),
     "no level": wrong(late(0) - 7.3, "the perfect vacuum being at 0 bar; write 'pegging: ambient'"),
     "drift": wrong(late(0) + 3 * FINE / 720, "the pressure jumps by -2.9"),
     "drift of 1 bar": wrong(late(360) + FINE / 720, "the pressure jumps by -1", angles=FINE - 360),
-    "drift in noise": wrong(cycles(ENGINE, 1, 0.4, noise=0.1)[1][0] + FINE / 240, "does the sensor drift?", CLEARED),
+    "drift in noise": wrong(
+        cycles(ENGINE, 1, 0.4, noise=0.1)[1][0] + FINE / 240, "does the sensor drift?", CLEARED
+    ),
     "half degrees on whole ones": wrong(
         absolute(ENGINE, HALVES),
         "samples have the angle of the one before: rounded angles? write 'angle_step: 0.5 deg'",
@@ -167,15 +191,40 @@ WRONG = {
         "the perfect vacuum being at 0 bar; correct 'pegging'; p_i stays",
         ", pegging: {angle: 10 deg, pressure: 0.95 bar}",
     ),
-    **{f"{unit} meant as bar, absolute": wrong(late(0), UNIT, f"{RATIO}, unit: {unit}") for unit in ("Pa", "psi")},
-    **{f"{unit} meant as bar, gauge": wrong(SUNK, UNIT, f"{RATIO}, unit: {unit}", "gauge") for unit in ("Pa", "psi")},
+    **{
+        f"{unit} meant as bar, absolute": wrong(late(0), UNIT, f"{RATIO}, unit: {unit}")
+        for unit in ("Pa", "psi")
+    },
+    **{
+        f"{unit} meant as bar, gauge": wrong(SUNK, UNIT, f"{RATIO}, unit: {unit}", "gauge")
+        for unit in ("Pa", "psi")
+    },
 }
 NO_KEY = "level", "closing sample", "pegged at its peak", "no engine in any unit"
 """Faults whose way out is no key with a value that the note could name."""
 SEEN = [
-    *("90 deg late", "one turn late", "gauge as absolute", "ten times", "a tenth, gauge", "backward", "on its head"),
-    *("no level", "drift in noise", "half degrees on whole ones", "dead centre", "marks of one turn as degrees"),
-    *("closing sample", "pegged at its peak", "Pa meant as bar, gauge", "psi meant as bar, absolute"),
+    *(
+        "90 deg late",
+        "one turn late",
+        "gauge as absolute",
+        "ten times",
+        "a tenth, gauge",
+        "backward",
+        "on its head",
+    ),
+    *(
+        "no level",
+        "drift in noise",
+        "half degrees on whole ones",
+        "dead centre",
+        "marks of one turn as degrees",
+    ),
+    *(
+        "closing sample",
+        "pegged at its peak",
+        "Pa meant as bar, gauge",
+        "psi meant as bar, absolute",
+    ),
     *("a tenth, pegged", "no engine in any unit"),
 ]
 
@@ -193,7 +242,9 @@ def test_what_is_wrong_is_seen_and_its_way_out_is_one(tmp_path: Path, name: str)
     assert notes_of(machine_text(file, keys, pressures, cycle)) == []
 
 
-@pytest.mark.parametrize("samples", [late(90), late(0) * 10, absolute(ENGINE, -FINE)], ids=["late", "unit", "backward"])
+@pytest.mark.parametrize(
+    "samples", [late(90), late(0) * 10, absolute(ENGINE, -FINE)], ids=["late", "unit", "backward"]
+)
 def test_what_it_would_change_is_the_true_figure(tmp_path: Path, samples: Any) -> None:
     """p_i as found and as it is, against the trapezoid rule by hand."""
     true, found = indicated(FINE, late(0)), indicated(FINE, samples)
@@ -206,7 +257,10 @@ def test_motored_traces_are_known_by_their_shape(tmp_path: Path, off: float) -> 
     """Too late, a motored trace does positive work; its two sides are alike all the same."""
     (note,) = notes_of(machine_text(written(tmp_path, *motored(off)), cycle="two-stroke"))
     side = f"{abs(off):.2g} deg {'after' if off > 0 else 'before'} the dead centre"
-    assert f"no combustion shows, and the peak is {side}; that of a motored engine is at it or just before" in note
+    assert (
+        f"no combustion shows, and the peak is {side}; that of a motored engine is at it or just before"
+        in note
+    )
 
 
 def test_four_strokes_told_as_two(tmp_path: Path) -> None:
@@ -223,7 +277,9 @@ def test_cycles_told_by_a_wrong_speed(tmp_path: Path) -> None:
     _, each = cycles(ENGINE, 12, 0.5, noise=0.05)
     file = written(tmp_path, np.arange(12 * 1440) * 0.5 / 9000, each.ravel())
     keys = ", angle_unit: s, recorded_speed: {:.7g} rpm"
-    (note,) = [one for one in notes_of(machine_text(file, keys.format(1515))) if "left out" not in one]
+    (note,) = [
+        one for one in notes_of(machine_text(file, keys.format(1515))) if "left out" not in one
+    ]
     assert "the cycles wander" in note
     change = float(re.findall(r"a 'recorded_speed' about ([0-9.]+)% lower", note)[0])
     assert change == pytest.approx(100 * (1 - 1500 / 1515), rel=0.1)
@@ -242,23 +298,41 @@ def test_the_brake_of_an_engine_of_four(tmp_path: Path) -> None:
     each = "  " + f"stroke: 100 mm{body}".replace("\n", "\n    ")
     four = f"{brake}{head}cylinders:\n  count: 4\n  firing_order: 1-3-4-2\n  each:\n  {each}"
     assert notes_of(four) == []
-    (note,) = notes_of("brake_power: 500 kW\n" + machine_text(written(tmp_path, *motored(-0.5)), cycle="two-stroke"))
+    (note,) = notes_of(
+        "brake_power: 500 kW\n"
+        + machine_text(written(tmp_path, *motored(-0.5)), cycle="two-stroke")
+    )
     assert "far below what the driven shaft takes, 500 kW" in note
 
 
 def drawn_trace(random: np.random.Generator) -> tuple[Trace, Setting]:
     """Any trace in any chamber: few samples or many, even or not, of noise, pulses, nothing or an engine."""
     cycle, count = float(random.choice([360, 720])), int(random.choice([3, 4, 8, 37, 400]))
-    inside = np.sort(random.uniform(0, cycle, count)) if random.random() < 0.5 else np.arange(1, count + 1) * 1.0
-    angles = np.concatenate(([0.0], inside * (1 if random.random() < 0.5 else cycle / (inside[-1] + 1)), [cycle]))
+    inside = (
+        np.sort(random.uniform(0, cycle, count))
+        if random.random() < 0.5
+        else np.arange(1, count + 1) * 1.0
+    )
+    angles = np.concatenate(
+        ([0.0], inside * (1 if random.random() < 0.5 else cycle / (inside[-1] + 1)), [cycle])
+    )
     angles = np.sort(np.clip(angles, 0, cycle))
-    shapes = [0 * angles, random.standard_normal(len(angles)), absolute(ENGINE, angles), 1.0 * (angles > cycle / 2)]
+    shapes = [
+        0 * angles,
+        random.standard_normal(len(angles)),
+        absolute(ENGINE, angles),
+        1.0 * (angles > cycle / 2),
+    ]
     pressures = shapes[random.integers(len(shapes))] * 10 ** random.uniform(-8, 14)
     laps = pressures * (1 + 0.1 * random.standard_normal((int(random.integers(1, 5)), 1)))
     clearance = random.choice([None, 0.07, 1e-6, 1e6])
-    trace = Trace(angles, laps, clearance=clearance, completed=bool(random.random() < 0.5), unit=1e5)
+    trace = Trace(
+        angles, laps, clearance=clearance, completed=bool(random.random() < 0.5), unit=1e5
+    )
     ambient, gauge = random.choice([0.0, 101325.0]), bool(random.random() < 0.5)
-    return trace, Setting(SliderCrank(0.05, 0.2), cycle, bool(random.random() < 0.5), float(ambient), not gauge)
+    return trace, Setting(
+        SliderCrank(0.05, 0.2), cycle, bool(random.random() < 0.5), float(ambient), not gauge
+    )
 
 
 def test_no_trace_stops_a_check() -> None:
@@ -286,8 +360,14 @@ def test_a_dead_centre_two_degrees_off_is_seen_by_both_exponents(
     The dead centre is found within 1 deg, the loss angle that no pressure alone can tell.
     """
     true = indicated(FINE, absolute(engine, FINE))
-    assert abs(indicated(FINE, absolute(engine, FINE - degrees)) / true - 1) == pytest.approx(0.14, abs=0.01)
-    notes = notes_of(machine_text(written(tmp_path, FINE, absolute(engine, FINE - degrees)), ", compression_ratio: 15"))
+    assert abs(indicated(FINE, absolute(engine, FINE - degrees)) / true - 1) == pytest.approx(
+        0.14, abs=0.01
+    )
+    notes = notes_of(
+        machine_text(
+            written(tmp_path, FINE, absolute(engine, FINE - degrees)), ", compression_ratio: 15"
+        )
+    )
     assert len(notes) == 1
     assert "gauge" not in notes[0]
     keys, _, _ = obeyed(notes[0], "", "absolute", "four-stroke")

@@ -19,7 +19,9 @@ UNITS = Path(__file__).with_name("units.txt").read_text("utf-8").splitlines()
 
 
 @law_of_each(tuple(line.split(" | ")[:3]) for line in UNITS if line[0] != "#")
-def test_values_by_definition_and_what_is_said_of_other_texts(text: str, kind: str, value: str) -> None:
+def test_values_by_definition_and_what_is_said_of_other_texts(
+    text: str, kind: str, value: str
+) -> None:
     mark, _, said = value.partition(" ")
     if mark in ("!", "…"):
         with pytest.raises(UnitError) as caught:
@@ -27,7 +29,9 @@ def test_values_by_definition_and_what_is_said_of_other_texts(text: str, kind: s
         assert str(caught.value) == said if mark == "!" else said in str(caught.value)
     else:
         wanted = float(said or mark)
-        assert parse_quantity(text, kind) == (pytest.approx(wanted, rel=1e-15, abs=0) if mark == "≈" else wanted)
+        assert parse_quantity(text, kind) == (
+            pytest.approx(wanted, rel=1e-15, abs=0) if mark == "≈" else wanted
+        )
 
 
 @law_of_each(kind for kind in SI if kind != "ratio")
@@ -42,7 +46,11 @@ def test_the_size_chooses_among_metric_units() -> None:
     assert found == ["mm", "mm", "mm", "m"]
     assert [shown_unit("pressure", "metric", size) for size in (50.0, -931632.0)] == ["mbar", "bar"]
     assert [shown_unit("force", "metric", size) for size in (999.0, 1e3, -2e6)] == ["N", "kN", "MN"]
-    assert [shown_unit("force", system, 1e9) for system in ("si", "technical", "imperial")] == ["N", "kgf", "lbf"]
+    assert [shown_unit("force", system, 1e9) for system in ("si", "technical", "imperial")] == [
+        "N",
+        "kgf",
+        "lbf",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -60,7 +68,10 @@ def test_messages_are_told_in_the_units_asked_for(
 ) -> None:
     machine = CONFIGS["waterworks"]
     largest = case_of("waterworks").cylinders[0]["P_max"].value
-    for condition, expected, unit in (("x = 9 m", 0.8 / metres, length), ("P = 9 MN", largest / newtons, force)):
+    for condition, expected, unit in (
+        ("x = 9 m", 0.8 / metres, length),
+        ("P = 9 MN", largest / newtons, force),
+    ):
         result = run("forces", machine, "--where", condition, *words)
         assert result.exit_code == 3
         number, told = result.stderr.strip().rpartition(" to ")[2].split()

@@ -56,7 +56,9 @@ def test_points_on_paper() -> None:
         " compression: [[1, 1.2], [0, 9.5]]}}\n"
     )
     assert drawn.work == pytest.approx(written.work, rel=1e-14)
-    assert drawn.work == pytest.approx((9.5 * 0.35 + 11.7 / 2 * 0.65 - 10.7 / 2) * AT * AREA * STROKE, rel=1e-13)
+    assert drawn.work == pytest.approx(
+        (9.5 * 0.35 + 11.7 / 2 * 0.65 - 10.7 / 2) * AT * AREA * STROKE, rel=1e-13
+    )
     assert drawn.at([60]).p_head == pytest.approx(written.at([60]).p_head, rel=1e-14)
 
 
@@ -74,7 +76,9 @@ def test_a_planimeter_gives_the_mean_pressure(planimeter: str) -> None:
 @pytest.mark.parametrize("exponent", [1, 1.3])
 def test_a_steam_card_without_clearance(exponent: float) -> None:
     """Full pressure p over x, then p x^n/z^n to the end, against the exhaust q: the integral of the books."""
-    steam = f"{{admission: 8 bar, exhaust: 1 bar, cut_off: 30 %, clearance: 0, exponent: {exponent}}}"
+    steam = (
+        f"{{admission: 8 bar, exhaust: 1 bar, cut_off: 30 %, clearance: 0, exponent: {exponent}}}"
+    )
     forces = forces_of(f"indicator: {{pressures: absolute, head_end: {{steam: {steam}}}}}\n")
     log = math.log(1 / 0.3)
     expanded = log if exponent == 1 else (1 - math.exp(-(exponent - 1) * log)) / (exponent - 1)

@@ -34,10 +34,14 @@ def test_a_constant_friction_takes_its_force_times_the_way(crosshead: str) -> No
     if not crosshead:
         assert forces.friction_work == pytest.approx(2000 * 2 * 0.8, rel=1e-14)
         assert forces.at([60, 300]).F_friction.tolist() == [-2000, 2000]
-        assert forces.at([60]).S[0] == pytest.approx(plain.at([60]).S[0] * (1 - 2000 / plain.at([60]).P[0]), rel=1e-13)
+        assert forces.at([60]).S[0] == pytest.approx(
+            plain.at([60]).S[0] * (1 - 2000 / plain.at([60]).P[0]), rel=1e-13
+        )
     else:
         assert forces.friction_works["constant"] == 3200
-        assert forces.friction_work == pytest.approx(3200 + forces.friction_works.get("crosshead", 0), rel=1e-15)
+        assert forces.friction_work == pytest.approx(
+            3200 + forces.friction_works.get("crosshead", 0), rel=1e-15
+        )
     assert abs(forces.energy_residual or 0) < 1e-13
 
 
@@ -61,7 +65,9 @@ def test_the_rim_of_the_wanted_flywheel() -> None:
     omega = 4 * math.pi
     # between two crossings at 45 deg and 135 deg stands a triangle of 2000 N m over a quarter turn
     inertia = 2000 * math.pi / 4 * 50 / omega**2
-    assert turning.rim_section == pytest.approx(inertia / (3 / 2) ** 2 / (7200 * math.pi * 3), rel=1e-12)
+    assert turning.rim_section == pytest.approx(
+        inertia / (3 / 2) ** 2 / (7200 * math.pi * 3), rel=1e-12
+    )
     assert turning.rim_speed == pytest.approx(omega * 1.5, rel=1e-15)
     assert turning.rim_stress == pytest.approx(7200 * (omega * 1.5) ** 2, rel=1e-14)
     printed = run("flywheel", "-", text=text).stdout
@@ -82,7 +88,10 @@ def test_the_rim_of_the_wanted_flywheel() -> None:
             "mean_diameter: 90 in, depth: 6 in, width: 12 in, density: 7.85 t/m3",
             7850 * 0.3048 * math.pi * (1.2192**4 - 1.0668**4) / 2,
         ),
-        ("outer_diameter: 8 ft, inner_diameter: 7 ft, mass: 3 t", 3000 * (1.2192**2 + 1.0668**2) / 2),
+        (
+            "outer_diameter: 8 ft, inner_diameter: 7 ft, mass: 3 t",
+            3000 * (1.2192**2 + 1.0668**2) / 2,
+        ),
         ("outer_diameter: 2 m, inner_diameter: 0 m, mass: 3 t", 3000 / 2),
     ],
 )
@@ -91,7 +100,9 @@ def test_a_rim_of_which_the_sizes_are_known(sizes: str, inertia: float) -> None:
     turning = solve(loads(text)).flywheel
     found = turning.J
     assert found == pytest.approx(inertia, rel=1e-14)
-    assert turning.delta_book == pytest.approx(turning.dE / (inertia * (4 * math.pi) ** 2), rel=1e-14)
+    assert turning.delta_book == pytest.approx(
+        turning.dE / (inertia * (4 * math.pi) ** 2), rel=1e-14
+    )
     if "width" in sizes:
         assert turning.rim_section == pytest.approx(0.1524 * 0.3048, rel=1e-14)
     printed = run("flywheel", "-", text=text).stdout
@@ -99,7 +110,10 @@ def test_a_rim_of_which_the_sizes_are_known(sizes: str, inertia: float) -> None:
 
 
 def test_the_rim_of_a_given_flywheel_of_cast_iron() -> None:
-    text = DIAGRAM.replace("speed: 120 rpm\n", "") + "flywheel: {inertia: 500 kg m2, rim: {mean_diameter: 2 m}}\n"
+    text = (
+        DIAGRAM.replace("speed: 120 rpm\n", "")
+        + "flywheel: {inertia: 500 kg m2, rim: {mean_diameter: 2 m}}\n"
+    )
     turning = solve(loads(text)).flywheel
     assert turning.rim_section == pytest.approx(500 / (7250 * 2 * math.pi), rel=1e-14)
     assert turning.rim_stress is None
@@ -112,7 +126,12 @@ WHEEL = "speed: 120 rpm\nflywheel: {fluctuation: 1/50}\n"
 
 @pytest.mark.parametrize(
     ("cycle", "order", "cos", "sin"),
-    [("two-stroke", 2, 300, 400), ("two-stroke", 24, 0, -50), ("four-stroke", 0.5, 400, 300), ("two-stroke", 7, 1, 0)],
+    [
+        ("two-stroke", 2, 300, 400),
+        ("two-stroke", 24, 0, -50),
+        ("four-stroke", 0.5, 400, 300),
+        ("two-stroke", 7, 1, 0),
+    ],
 )
 def test_an_effort_of_one_harmonic(cycle: str, order: float, cos: float, sin: float) -> None:
     """M = m + c cos νφ + s sin νφ has the amplitude a = √(c² + s²), and ΔE = 2 a/ν whatever the mean."""
@@ -122,7 +141,9 @@ def test_an_effort_of_one_harmonic(cycle: str, order: float, cos: float, sin: fl
     assert turning.M_mean == pytest.approx(1e6, rel=1e-13)
     assert turning.M_max.value == pytest.approx(1e6 + amplitude, rel=1e-13)
     assert turning.dE == pytest.approx(2 * amplitude / order, rel=1e-11)
-    assert turning.J_needed == pytest.approx(2 * amplitude / order * 50 / (4 * math.pi) ** 2, rel=1e-11)
+    assert turning.J_needed == pytest.approx(
+        2 * amplitude / order * 50 / (4 * math.pi) ** 2, rel=1e-11
+    )
 
 
 POINTS = [(0, 0.0), (90, 4.5), (180, -1.0), (180, 0.5), (270, 4.0), (360, 0.0)]
@@ -135,7 +156,9 @@ def test_an_effort_from_a_file(tmp_path: Path, first: int) -> None:
     turned = [*POINTS[start:], *((angle + 360, torque) for angle, torque in POINTS[1 : start + 1])]
     rows = "\n".join(f"{angle + 30};x;{torque:.1f}".replace(".", ",") for angle, torque in turned)
     (tmp_path / "effort.csv").write_text(f"Winkel;;kNm\n{rows}\n")
-    layout = "skip_rows: 1, torque_column: 3, delimiter: semicolon, decimal: comma, angle_zero: 30 deg"
+    layout = (
+        "skip_rows: 1, torque_column: 3, delimiter: semicolon, decimal: comma, angle_zero: 30 deg"
+    )
     (tmp_path / "m.yaml").write_text(f"effort: {{unit: kN m, file: effort.csv, {layout}}}\n{WHEEL}")
     machine = load(tmp_path / "m.yaml")
     plain = loads(f"effort: {{unit: kN m, points: {[list(point) for point in POINTS]}}}\n{WHEEL}")

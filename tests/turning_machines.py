@@ -26,7 +26,9 @@ def of_points(
     diagram = Effort(tuple(a for a, _ in points), tuple(m for _, m in points))
     cycle = "four-stroke" if points[-1][0] > 360 else "two-stroke"
     speed = None if rpm is None else rpm / 60
-    return Case(Machine((), effort=diagram, speed=speed, flywheel=wheel, cycle=cycle, **more)).flywheel
+    return Case(
+        Machine((), effort=diagram, speed=speed, flywheel=wheel, cycle=cycle, **more)
+    ).flywheel
 
 
 def rectangles(areas: Sequence[float], mean: float = 0.0) -> list[Point]:

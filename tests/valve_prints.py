@@ -56,7 +56,9 @@ def angle(id: str) -> Of:
 
 def mean(event: str) -> Of:
     """Return the mean of an event at both ends."""
-    return lambda results: float(results[f"{event}_head"].value + results[f"{event}_crank"].value) / 2
+    return lambda results: (
+        float(results[f"{event}_head"].value + results[f"{event}_crank"].value) / 2
+    )
 
 
 def rest(id: str) -> Of:
@@ -84,7 +86,16 @@ def _fuhst() -> list[Print]:
             of = f"{rods} rods, notch {notch}: compression"
             source = f"Fuhst, Dingler 154 (1859), {page}"
             prints.append(
-                Print(source, of, valve, key("compression_head"), figure, "", 0.018, why="read off a diagram")
+                Print(
+                    source,
+                    of,
+                    valve,
+                    key("compression_head"),
+                    figure,
+                    "",
+                    0.018,
+                    why="read off a diagram",
+                )
             )
     return prints
 
@@ -102,10 +113,23 @@ def _watzka() -> list[Print]:
         r = 16.5 / math.sin(math.radians(degrees))
         valve = f"eccentricity: {r!r} mm, steam_lap: 14.5 mm, angle_of_advance: {degrees!r} deg"
         of_cut_off = f"slot {slot}: cut-off"
-        prints.append(Print(source, of_cut_off, valve, key("cut_off_head"), cut_off, "", 0.0005, why=why))
+        prints.append(
+            Print(source, of_cut_off, valve, key("cut_off_head"), cut_off, "", 0.0005, why=why)
+        )
         wide = "rounded up" if opening == "13.9" else ""
         of_opening = f"slot {slot}: opening"
-        prints.append(Print(source, of_opening, valve, key("opening_head", 1e-3), opening, "lines", 0.05, why=wide))
+        prints.append(
+            Print(
+                source,
+                of_opening,
+                valve,
+                key("opening_head", 1e-3),
+                opening,
+                "lines",
+                0.05,
+                why=wide,
+            )
+        )
     return prints
 
 
@@ -119,7 +143,10 @@ def _bochkoltz() -> list[Print]:
         ("admission", rest("admission_head"), "97.5", 0.05),
     )
     source = "Bochkoltz, Dingler 195 (1870), S. 10"
-    return [Print(source, of, valve, figure, printed, "%", within) for of, figure, printed, within in figures]
+    return [
+        Print(source, of, valve, figure, printed, "%", within)
+        for of, figure, printed, within in figures
+    ]
 
 
 def _mueller_melchiors() -> list[Print]:
@@ -129,7 +156,18 @@ def _mueller_melchiors() -> list[Print]:
         valve = f"eccentricity: {math.hypot(25, B)!r} mm, steam_lap: 20 mm, lead: 5 mm"
         source = "Müller-Melchiors, Dingler 219 (1876), S. 5"
         why = "read off a diagram"
-        prints.append(Print(source, f"B = {B}: cut-off", valve, percent("cut_off_head"), printed, "%", 2.4, why=why))
+        prints.append(
+            Print(
+                source,
+                f"B = {B}: cut-off",
+                valve,
+                percent("cut_off_head"),
+                printed,
+                "%",
+                2.4,
+                why=why,
+            )
+        )
     return prints
 
 

@@ -16,16 +16,28 @@ from command import answer as answer_of
 
 FOLDER = Path(__file__).parent / "examples"
 TABLE: dict[str, list[dict[str, Any]]] = yaml.load(
-    (FOLDER / "answers.yaml").read_text(encoding="utf-8"), getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    (FOLDER / "answers.yaml").read_text(encoding="utf-8"),
+    getattr(yaml, "CSafeLoader", yaml.SafeLoader),
 )
 ROWS = [{"file": example, **row} for example, rows in TABLE.items() for row in rows]
 ASKED = [row for row in ROWS if "ask" in row]
 FILES = sorted(path.stem for path in FOLDER.glob("*.yaml") if path.stem != "answers")
 POUND, POUND_FORCE, FOOT = 0.45359237, 4.4482216152605, 0.3048
 SI = {
-    **dict.fromkeys(("", "deg", "m", "m/s", "m/s2", "rad/s", "rad/s2", "kg", "kg m2", "N", "N m", "Pa", "Hz"), 1.0),
+    **dict.fromkeys(
+        ("", "deg", "m", "m/s", "m/s2", "rad/s", "rad/s2", "kg", "kg m2", "N", "N m", "Pa", "Hz"),
+        1.0,
+    ),
     **dict.fromkeys(("rpm", "per min"), 1 / 60),
-    **{"mm": 1e-3, "cm": 1e-2, "in/s": FOOT / 12, "kN": 1e3, "kW": 1e3, "percent": 1e-2, "cm3": 1e-6},
+    **{
+        "mm": 1e-3,
+        "cm": 1e-2,
+        "in/s": FOOT / 12,
+        "kN": 1e3,
+        "kW": 1e3,
+        "percent": 1e-2,
+        "cm3": 1e-6,
+    },
     **{"lb": POUND, "lbf": POUND_FORCE, "lb ft2": POUND * FOOT**2, "ton": 2240 * POUND},
     **{"hp": 550 * FOOT * POUND_FORCE, "PS": 735.49875},
 }
@@ -63,7 +75,9 @@ def of_table(parsed: dict[str, Any], asked: dict[str, str | None]) -> list[float
     rows = list(range(len(columns[str(asked["id"])])))
     for condition in str(asked["rows"]).split("; "):
         name, _, values = condition.partition("=")
-        rows = [row for value in values.split(",") for row in rows if columns[name][row] == float(value)]
+        rows = [
+            row for value in values.split(",") for row in rows if columns[name][row] == float(value)
+        ]
     return [columns[str(asked["id"])][row] for row in rows]
 
 
@@ -73,14 +87,26 @@ def told(row: dict[str, Any]) -> Any:
     parsed = answer(row["file"], asked["command"] or "", asked["where"])
     if asked["rows"]:
         return of_table(parsed, asked)
-    parts = [{key.removeprefix("machine_"): what for key, what in parsed.items()}, *parsed.get("cylinders", ())]
+    parts = [
+        {key.removeprefix("machine_"): what for key, what in parsed.items()},
+        *parsed.get("cylinders", ()),
+    ]
     if asked["table"]:
-        table = next(one for part in parts for one in part.get("place_tables", ()) if one["id"] == asked["table"])
-        return next(one for one in table["columns"] if one["id"] == asked["id"])["values"][int(asked["nth"] or 0)]
+        table = next(
+            one
+            for part in parts
+            for one in part.get("place_tables", ())
+            if one["id"] == asked["table"]
+        )
+        return next(one for one in table["columns"] if one["id"] == asked["id"])["values"][
+            int(asked["nth"] or 0)
+        ]
     kind = "columns" if asked["angle"] or asked["where"] else "key_values"
     one = next(one for part in parts for one in part.get(kind, ()) if one["id"] == asked["id"])
     if asked["angle"]:
-        at = next(one for part in parts for one in part.get(kind, ()) if one["id"] == "phi")["values"]
+        at = next(one for part in parts for one in part.get(kind, ()) if one["id"] == "phi")[
+            "values"
+        ]
         return one["values"][at.index(float(asked["angle"]))]
     if asked["nth"]:
         return one["values" if asked["where"] else "value"][int(asked["nth"])]
@@ -94,5 +120,10 @@ def expected(row: dict[str, Any]) -> tuple[Any, Any]:
     figures = figures if isinstance(figures, list) else [figures]
     digits = 12 if "strict" in row else row.get("digits", 12)
     # nothing is to be nothing
-    last = [10.0 ** (math.floor(math.log10(abs(one))) + 1 - digits) if one else 0.0 for one in figures]
-    return [factor * one + row.get("plus", 0) for one in figures], [abs(factor) * one for one in last]
+    last = [
+        10.0 ** (math.floor(math.log10(abs(figure))) + 1 - digits) if figure else 0.0
+        for figure in figures
+    ]
+    return [factor * figure + row.get("plus", 0) for figure in figures], [
+        abs(factor) * one for one in last
+    ]

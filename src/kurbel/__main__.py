@@ -38,7 +38,9 @@ def _leave_out_working_directory() -> None:
     except OSError:  # it is deleted
         here = ""
     if here != os.path.realpath(own):
-        sys.path[:first] = [one for one in sys.path[:first] if one and os.path.realpath(one) != here]
+        sys.path[:first] = [
+            one for one in sys.path[:first] if one and os.path.realpath(one) != here
+        ]
 
 
 def _open_closed_streams() -> None:

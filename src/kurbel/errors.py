@@ -68,7 +68,9 @@ class RuleError(KurbelError):
 
     def __init__(self, *faults: Fault) -> None:
         self.faults = faults
-        super().__init__("; ".join(f"{path_text(f.path)}: {f.message}" if f.path else f.message for f in faults))
+        super().__init__(
+            "; ".join(f"{path_text(f.path)}: {f.message}" if f.path else f.message for f in faults)
+        )
 
 
 def refuse(*faults: Fault) -> None:
@@ -117,12 +119,18 @@ class MachineFileError(KurbelError):
             shown.append(spelt(self.line(fault)))
             if not fault.source_line.strip():
                 continue
-            place, room = fault.column - 1, max(cells - 6, 1)  # less the margin and an ellipsis on either side
+            place, room = (
+                fault.column - 1,
+                max(cells - 6, 1),
+            )  # less the margin and an ellipsis on either side
             start = 0 if len(fault.source_line) <= room else max(place - room * 3 // 4, 0)
             text = fault.source_line[start : start + room]
             clean = [spelt(c if c.isprintable() else " ") for c in text]
             cut = spelt("…")[:1]
-            lead, tail = cut if start else " ", f" {cut}" if start + len(text) < len(fault.source_line) else ""
+            lead, tail = (
+                cut if start else " ",
+                f" {cut}" if start + len(text) < len(fault.source_line) else "",
+            )
             shown.append(f"  {lead} {''.join(clean)}{tail}".rstrip())
             shown.append(" " * (4 + len("".join(clean[: place - start]))) + "^")
         return "\n".join(shown)

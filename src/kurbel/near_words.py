@@ -15,7 +15,11 @@ def near(word: str, known: tuple[str, ...]) -> str:
     alike = {name.lower().replace("-", "_"): name for name in known}
     found = get_close_matches(lower, list(alike), n=3, cutoff=0.7)
     cutoff = _OTHER_FIRST_LETTER
-    found = [one for one in found if one[:1] == lower[:1] or get_close_matches(lower, [one], cutoff=cutoff)]
+    found = [
+        one
+        for one in found
+        if one[:1] == lower[:1] or get_close_matches(lower, [one], cutoff=cutoff)
+    ]
     return alike[found[0]] if found else ""
 
 

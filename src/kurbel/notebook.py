@@ -19,7 +19,7 @@ from kurbel.render.markup import Html, written
 from kurbel.render.svg import svg_file
 from kurbel.render.text_tables import key_value_table
 from kurbel.solver import case as solved
-from kurbel.solver.figures import Results, Shown
+from kurbel.solver.figures import NotebookView, Results
 from kurbel.tables.frame import shown_key_values
 
 
@@ -47,7 +47,9 @@ class Drawing(NamedTuple):
         draw_file(self.pictures, Look(), file_name)
 
 
-def draw(case: ShownCase, *names: str, units: str = "metric", angles: tuple[float, ...] | None = None) -> Drawing:
+def draw(
+    case: ShownCase, *names: str, units: str = "metric", angles: tuple[float, ...] | None = None
+) -> Drawing:
     """Return pictures of a machine, by the words of `kurbel plot --list`; without names the most informative picture.
 
     angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that does not exist.
@@ -60,10 +62,14 @@ def as_html(shown: solved.Case | Results) -> str:
     if isinstance(shown, Results):
         return _key_values(shown, "Key values")
     machine = shown.machine
-    parts: list[tuple[str, Results]] = [(one.drive.name, one) for one in shown.cylinders]
+    parts: list[tuple[str, Results]] = [
+        (cylinder.drive.name, cylinder) for cylinder in shown.cylinders
+    ]
     if len(parts) != 1 or machine.flywheel:
         parts.append(("whole machine", shown.flywheel))
-    return f"<h3>{escape(machine.name)}</h3>\n{''.join(_key_values(one, name) for name, one in parts)}"
+    return (
+        f"<h3>{escape(machine.name)}</h3>\n{''.join(_key_values(one, name) for name, one in parts)}"
+    )
 
 
 def _key_values(results: Results, caption: str) -> str:
@@ -71,7 +77,10 @@ def _key_values(results: Results, caption: str) -> str:
     with np.errstate(all="ignore"):
         try:
             every = results.key_values().values()
-            values = [one.value if one.degrees is None else Extreme(one.value, one.degrees) for one in every]
+            values = [
+                one.value if one.degrees is None else Extreme(one.value, one.degrees)
+                for one in every
+            ]
             found = shown_key_values(zip((one.quantity for one in every), values), "metric")
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
@@ -79,4 +88,4 @@ def _key_values(results: Results, caption: str) -> str:
     return "".join(written([key_value_table(caption, found, out.look)], out))
 
 
-Shown.as_html = as_html
+NotebookView.as_html = as_html

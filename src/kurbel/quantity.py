@@ -27,7 +27,9 @@ GREEK = {
 }  # fmt: skip
 """Character of a symbol -> its replacement if the output has no Greek letters."""
 _PLAIN = str.maketrans(GREEK)
-_FIRST_WORDS = re.compile(r".+?(?=[:;,(−Σ]| (?:from|toward|of|over|in|on|at|that|since|along|to) |$)")
+_FIRST_WORDS = re.compile(
+    r".+?(?=[:;,(−Σ]| (?:from|toward|of|over|in|on|at|that|since|along|to) |$)"
+)
 _LARGEST = {"max": "Largest", "min": "Smallest", "peak": "Largest magnitude of"}
 """End of the id of an extreme of a column -> the first words of its sentence."""
 
@@ -117,12 +119,16 @@ class Quantity(NamedTuple):
 
     def of_ram(self) -> Quantity:
         """Return the quantity of a machine that drives a ram and has no piston."""
-        text = self.text.replace("piston force", "force along the stroke line").replace("piston speed", "ram speed")
+        text = self.text.replace("piston force", "force along the stroke line").replace(
+            "piston speed", "ram speed"
+        )
         return self._replace(text=text)
 
     def printed_by(self, command: str, heading: str = "") -> Quantity:
         """Return it as a key value of this command and its own `commands`, below this heading unless it has one."""
-        words = (() if self.commands == ITS_OWN else self.commands) + ((command,) if command else ())
+        words = (() if self.commands == ITS_OWN else self.commands) + (
+            (command,) if command else ()
+        )
         return self._replace(commands=tuple(dict.fromkeys(words)), heading=self.heading or heading)
 
     def marked(self, unit: str) -> str:
@@ -161,7 +167,9 @@ def called(name: str, quantities: Iterable[Quantity]) -> tuple[str, ...]:
 
 def ambiguity(name: str, found: tuple[str, ...]) -> str:
     """Return the message for a symbol that several quantities have; '' if only one has it."""
-    return f"'{name}' is the symbol of {' and of '.join(found)}; write which" if len(found) > 1 else ""
+    return (
+        f"'{name}' is the symbol of {' and of '.join(found)}; write which" if len(found) > 1 else ""
+    )
 
 
 def in_sentences(word: str, quantities: Iterable[Quantity]) -> str:
@@ -171,11 +179,13 @@ def in_sentences(word: str, quantities: Iterable[Quantity]) -> str:
     '; it is in the sentences of A_head'
     """
     words = word.lower().replace("_", " ")
-    ids = dict.fromkeys(one.id for one in quantities if len(words) > 2 and words in one.text.lower())
+    ids = dict.fromkeys(
+        quantity.id for quantity in quantities if len(words) > 2 and words in quantity.text.lower()
+    )
     return f"; it is in the sentences of {', '.join(ids)}" if ids else ""
 
 
-def joined(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str]:
+def rejoined_names(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str]:
     """Yield names that were split at their commas as they were before: `σ_w` and `A` are one where `σ_w,A` is known.
 
     Words that are ids, as `p_max` and `m`, are those, whatever symbol they might be together.
@@ -193,7 +203,9 @@ def joined(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str
         yield name
 
 
-PHI = Quantity("phi", "φ", "angle", "Crank angle from the inner dead centre, in the sense of rotation")
+PHI = Quantity(
+    "phi", "φ", "angle", "Crank angle from the inner dead centre, in the sense of rotation"
+)
 """Over it all other columns are printed."""
 
 
@@ -213,20 +225,24 @@ class Lists(NamedTuple):
 
     def commands_of(self, id: str) -> tuple[str, ...]:
         """Return the commands that have a key value, the one whose own it is first."""
-        return tuple(dict.fromkeys(word for one in self.all_key_values if one.id == id for word in one.commands))
+        return tuple(
+            dict.fromkeys(
+                word for one in self.all_key_values if one.id == id for word in one.commands
+            )
+        )
 
 
 Of = Callable[[Any], V]
-"""Takes the results of a command, or the state at crank angles; see `Row`."""
-Condition = Of[bool]
+"""Takes the results of a command, or the state at crank angles; see `QuantityRow`."""
+ResultCondition = Of[bool]
 Formula = Of[Any]
 FormulaOfPart = Callable[[Any, str], Any]
 """Takes the results of a command and the name of one of their parts."""
-Answers = dict[str, Any]
+ValuesById = dict[str, Any]
 """Values in SI by id, without those that there are not."""
 
 
-class Row(NamedTuple):
+class QuantityRow(NamedTuple):
     """A quantity with what computes it.
 
     of: takes the results of a command, or for a column the state at crank angles, and returns the value in SI, None
@@ -235,7 +251,7 @@ class Row(NamedTuple):
 
     quantity: Quantity
     of: Formula
-    unless: Condition | None = None
+    unless: ResultCondition | None = None
 
 
 class Heading(NamedTuple):
@@ -250,10 +266,12 @@ class Computed(Generic[V]):
     Its id is its name in the class. function: takes the object; None where the value is in its mapping `answers`.
     """
 
-    def __init__(self, function: Of[V] | None, quantity: Quantity, unless: Condition | None = None) -> None:
+    def __init__(
+        self, function: Of[V] | None, quantity: Quantity, unless: ResultCondition | None = None
+    ) -> None:
         self.name, self.__doc__ = quantity.id, quantity.text
         self.function = function or (lambda one: one.answers.get(self.name))
-        self.rows: tuple[Row, ...] = (Row(quantity, self.__get__, unless),)
+        self.rows: tuple[QuantityRow, ...] = (QuantityRow(quantity, self.__get__, unless),)
 
     def __set_name__(self, owner: type, name: str) -> None:
         (row,) = self.rows
@@ -273,7 +291,7 @@ class Computed(Generic[V]):
 
 
 def key_value(
-    symbol: str, kind: str, *, unless: Condition | None = None, **words: Any
+    symbol: str, kind: str, *, unless: ResultCondition | None = None, **words: Any
 ) -> Callable[[Of[V]], Computed[V]]:
     """Return what makes a method a key value or column of its class; the words are those of `Quantity`.
 
@@ -282,7 +300,9 @@ def key_value(
 
     def made(function: Of[V]) -> Computed[V]:
         text = " ".join((function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
-        return Computed(function, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless)
+        return Computed(
+            function, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless
+        )
 
     return made
 
@@ -296,7 +316,7 @@ def value(
     text: str,
     of: Formula | None = None,
     *,
-    unless: Condition | None = None,
+    unless: ResultCondition | None = None,
     **words: Any,
 ) -> Computed[Any]:
     """Return a key value or column: its id is the name of the attribute, `text` the sentence that users read.
@@ -310,7 +330,7 @@ def value(
 class ForEach:
     """One quantity of several parts, a method of the part; its rows are attributes of the class, named by their ids."""
 
-    def __init__(self, of: FormulaOfPart, rows: tuple[Row, ...]) -> None:
+    def __init__(self, of: FormulaOfPart, rows: tuple[QuantityRow, ...]) -> None:
         self.of, self.rows = of, rows
 
     def __get__(self, one: object | None, owner: type) -> Any:
@@ -338,10 +358,12 @@ def values_for(
 
     answer: FormulaOfPart = of or (lambda one, part: one.answers.get(id.replace("*", part)))
 
-    def row(part: str, index: str, called: str) -> Row:
+    def row(part: str, index: str, called: str) -> QuantityRow:
         texts = id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called)
         own = {"commands": ITS_OWN, "after": after.replace("*", part), "group": group(part)}
         quantity = Quantity(*texts, **(own | words))
-        return Computed(lambda one: answer(one, part), quantity).rows[0]  # computed once, as any other
+        return Computed(lambda one: answer(one, part), quantity).rows[
+            0
+        ]  # computed once, as any other
 
     return ForEach(answer, tuple(row(part, *words) for part, words in parts.items()))

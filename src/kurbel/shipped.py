@@ -4,13 +4,18 @@ import os
 
 _PACKAGE = os.path.dirname(os.path.abspath(__file__))
 # a wheel carries the machines inside the package; a checkout has them next to src
-_PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"))
+_PLACES = (
+    os.path.join(_PACKAGE, "configs"),
+    os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"),
+)
 
 
 def shipped() -> dict[str, str]:
     """Return the machines that come with kurbel: the text of each file by its name."""
     folder = next(filter(os.path.isdir, _PLACES))
-    names = sorted(name.removesuffix(".yaml") for name in os.listdir(folder) if name.endswith(".yaml"))
+    names = sorted(
+        name.removesuffix(".yaml") for name in os.listdir(folder) if name.endswith(".yaml")
+    )
     texts = {}
     for name in names:
         with open(os.path.join(folder, f"{name}.yaml"), encoding="utf-8") as file:

@@ -53,7 +53,9 @@ def of_cards() -> Formulas:
 
     # a card of 10 001 points: p = 1 + 8 (1 − z)² bar at z = k/10 000, back at 1 bar; trapezia
     count = 10_000
-    squares = mpf(sum(2 * k * k for k in range(count)) + count * count)  # both ends of every trapezium
+    squares = mpf(
+        sum(2 * k * k for k in range(count)) + count * count
+    )  # both ends of every trapezium
     fine = 8e5 * squares / (2 * mpf(count) ** 3) * stroke * bore_area(0.45)
     return {
         ("steam, exponent 1 + 2e-16", "forces work"): steam,
@@ -67,7 +69,9 @@ def of_speed() -> Formulas:
         ("effort in a block", "flywheel dE"): 100 * mp.pi,
         # δ = ΔE/(J ω²), where δ² no longer shows
         ("J = 1e15 kg m²", "flywheel delta"): 100 * mp.pi / (mpf(1e15) * (2 * mp.pi) ** 2),
-        ("load that falls as 1/ω, ∮ dφ/ω as at the nominal speed", "flywheel omega_mean"): 100 * mp.pi / 60,
+        ("load that falls as 1/ω, ∮ dφ/ω as at the nominal speed", "flywheel omega_mean"): 100
+        * mp.pi
+        / 60,
         ("slip 1e-12", "flywheel delta"): mpf(1e-12),
         ("slip 1e-12", "flywheel omega@0"): 2 * mp.pi * (1 + mpf(1e-12) / 2),
         ("mean torque under waves of 1e12 times it", "harmonics M_mean"): mpf(1),
@@ -106,14 +110,18 @@ def of_coupling() -> Formulas:
     return {
         ("coupling, natural order 99", "flywheel natural_order"): orders[99],
         # half of the wave of 500 N m accelerates the driven mass, magnified by n²/(n² − 1)
-        ("coupling, natural order 99", "flywheel M_coupling_max"): 1000 + 250 * square / (square - 1),
+        ("coupling, natural order 99", "flywheel M_coupling_max"): 1000
+        + 250 * square / (square - 1),
         ("coupling, natural order 101", "flywheel natural_order"): orders[101],
     }
 
 
 def of_rods() -> Formulas:
     """Torque of a free rod by its kinetic energy, M = −dE/dφ, and the force in a rod hardly longer than the crank."""
-    crank, rod, mass, gravity, inertia, omega = (*map(mpf, (0.4, 2.0, 100.0, 0.8, 96000.0)), 2 * mp.pi)
+    crank, rod, mass, gravity, inertia, omega = (
+        *map(mpf, (0.4, 2.0, 100.0, 0.8, 96000.0)),
+        2 * mp.pi,
+    )
 
     def energy(phi: mpmath.mpf) -> mpmath.mpf:
         """Kinetic energy of the rod at uniform rotation, from the places of its pins."""
@@ -142,7 +150,9 @@ def of_rods() -> Formulas:
     along = mp.sqrt(1 - (crank * mp.sin(phi) / length) ** 2)
     return {
         ("exact rod of a thousandfold inertia", "forces M@30"): torque,
-        ("bearing of a rod, L/R = 1.0000001", "bearings load@89.9"): abs(100 * acceleration / along),
+        ("bearing of a rod, L/R = 1.0000001", "bearings load@89.9"): abs(
+            100 * acceleration / along
+        ),
     }
 
 
@@ -161,7 +171,10 @@ def of_balance() -> Formulas:
     top = mp.findroot(lambda phi: mp.diff(slowing, phi), (mp.pi / 2, mp.pi / 2 + mpf(1e-9)))
     return {
         ("L/R = 1.0001", "balance F_free_max"): 100 * omega**2 * slowing(top),
-        ("100 cylinders in phase", "balance F_free_max"): 10_000 * crank * omega**2 * (1 + mpf(1) / 5),
+        ("100 cylinders in phase", "balance F_free_max"): 10_000
+        * crank
+        * omega**2
+        * (1 + mpf(1) / 5),
     }
 
 
@@ -196,9 +209,14 @@ def of_designs() -> Formulas:
     work = -mpf(5e5) * bore_area(0.45) * mpf(0.8)
     delta = 100 * mp.pi / (mpf(1e15) * (2 * mp.pi) ** 2)
     return {
-        ("solution at the end of the range", "find crank=300 mm:400 mm | stroke = 800 mm"): mpf(0.4),
+        ("solution at the end of the range", "find crank=300 mm:400 mm | stroke = 800 mm"): mpf(
+            0.4
+        ),
         # every crank is a solution: the first one of the range is taken
         ("solution on a plateau", "find crank=300 mm:400 mm | p_max = 9.5 at"): mpf(0.3),
-        ("rows that stall in between", "sweep flywheel.inertia=1e15 kg m2,1 kg m2,1e15 kg m2 | delta[2]"): delta,
+        (
+            "rows that stall in between",
+            "sweep flywheel.inertia=1e15 kg m2,1 kg m2,1e15 kg m2 | delta[2]",
+        ): delta,
         ("rows that lock in between", "sweep friction.crosshead=0,20,0 | work[2]"): work,
     }

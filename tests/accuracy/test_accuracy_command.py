@@ -52,7 +52,9 @@ def engine(measured: Report, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 
 def test_text_names_versions_methods_and_states() -> None:
     text = printed("accuracy", "-", "--quick", text=MOTION)
-    assert re.match(r"plain\. Accuracy and run time\nPython 3\.\d+\.\d+, kurbel \d.*, numpy \d", text)
+    assert re.match(
+        r"plain\. Accuracy and run time\nPython 3\.\d+\.\d+, kurbel \d.*, numpy \d", text
+    )
     assert "quantity  method             points  state" in text
     assert "textbook, radians" in text
     assert "leaving out saves" not in text  # nothing to leave out
@@ -65,7 +67,11 @@ def test_json_has_both_sections_and_kurbel_is_exact(engine: dict[str, Any]) -> N
     assert (numerical["id"], saved["id"]) == ("numerical_error", "leaving_out")
     assert {row["state"] for row in numerical["rows"]} == {"ok"}
     errors = next(column for column in numerical["columns"] if column["id"] == "error")["values"]
-    own = {row["quantity"]: error for row, error in zip(numerical["rows"], errors) if row["method"] == "kurbel"}
+    own = {
+        row["quantity"]: error
+        for row, error in zip(numerical["rows"], errors)
+        if row["method"] == "kurbel"
+    }
     assert list(own) == ["x", "c", "b", "A_i", "T_max, T_min", "A_f", "ΔE"]
     assert max(own.values()) < 1e-12
 
@@ -76,7 +82,9 @@ def scene(name: str, *rows: tuple[str, str, str, float | None, float | None]) ->
     errors = Column("error", "error", "error", "", tuple(error for *_, error, _ in rows))
     times = Column("median", "median", "median", "ms", tuple(time for *_, time in rows))
     heads = ("quantity", "method", "points", "state")
-    return Part(name, (), place_tables=(PlaceTable("numerical_error", name, heads, names, (errors, times)),))
+    return Part(
+        name, (), place_tables=(PlaceTable("numerical_error", name, heads, names, (errors, times)),)
+    )
 
 
 TWO_SCENES = Report(
@@ -85,8 +93,18 @@ TWO_SCENES = Report(
     None,
     "scenes",
     (
-        scene("1", ("x", "kurbel", "ok", 0.0, 2.0), ("x", "book", "ok", 0.1, 1.0), ("x", "book", "ok", 0.01, 3.0)),
-        scene("2", ("x", "book", "ok", 0.2, 4.0), ("c", "kurbel", "ok", 1e-16, 5.0), ("c", "book", "lost", None, None)),
+        scene(
+            "1",
+            ("x", "kurbel", "ok", 0.0, 2.0),
+            ("x", "book", "ok", 0.1, 1.0),
+            ("x", "book", "ok", 0.01, 3.0),
+        ),
+        scene(
+            "2",
+            ("x", "book", "ok", 0.2, 4.0),
+            ("c", "kurbel", "ok", 1e-16, 5.0),
+            ("c", "book", "lost", None, None),
+        ),
     ),
 )
 
@@ -95,9 +113,17 @@ def test_a_panel_holds_all_scenes_of_a_quantity() -> None:
     """One line for each method and scene; what is exact can be drawn, and what failed cannot."""
     x, c = accuracy_picture(TWO_SCENES).panels
     assert (x.title, c.title, x.x.falling) == ("x", "c", True)
-    drawn = [(one.name.symbol, list(zip(one.x, one.y))) for one in x.curves if one.kind == "dots"]
-    assert drawn == [("kurbel", [(1e-17, 2.0)]), ("book", [(0.1, 1.0), (0.01, 3.0)]), ("book", [(0.2, 4.0)])]
-    assert [one.name.symbol for one in c.curves if one.kind == "dots"] == ["kurbel"]
+    drawn = [
+        (curve.name.symbol, list(zip(curve.x, curve.y)))
+        for curve in x.curves
+        if curve.kind == "dots"
+    ]
+    assert drawn == [
+        ("kurbel", [(1e-17, 2.0)]),
+        ("book", [(0.1, 1.0), (0.01, 3.0)]),
+        ("book", [(0.2, 4.0)]),
+    ]
+    assert [curve.name.symbol for curve in c.curves if curve.kind == "dots"] == ["kurbel"]
 
 
 def test_a_failed_extreme_case_ends_with_status_1(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -120,4 +146,7 @@ def test_a_quantity_that_is_zero_is_not_examined_and_that_is_told() -> None:
     idle = f"{{crank: 400 mm, rod: 2 m, bore: 450 mm, indicator: {{head_end: {zero}}}}}"
     (scene,) = answer("accuracy", "-", "--quick", text=idle)["scenes"]
     (one,) = scene["left_out"]
-    assert one == {"what": "A_i, T_max, T_min, ΔE", "why": "it is zero, and no error is relative to that"}
+    assert one == {
+        "what": "A_i, T_max, T_min, ΔE",
+        "why": "it is zero, and no error is relative to that",
+    }

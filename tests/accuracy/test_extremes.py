@@ -42,7 +42,9 @@ KEPT = {
 """One of each of the dear ones by default."""
 
 
-DEAR = {(case.case, case.asked.partition("@")[0]): case for case in CASES if not quick(case)}.values()
+DEAR = {
+    (case.case, case.asked.partition("@")[0]): case for case in CASES if not quick(case)
+}.values()
 """At one angle each: `kurbel accuracy --extremes` asks at all."""
 
 
@@ -98,11 +100,17 @@ def test_a_right_refusal_passes() -> None:
     def refuses(machine: Machine, asked: str) -> float | None:
         raise NoSolutionError("the crosshead locks itself")
 
-    (verdict,) = verdicts([Probe("right", PLAIN, "motion x@30", "status 3: locks itself")], refuses, loads)
+    (verdict,) = verdicts(
+        [Probe("right", PLAIN, "motion x@30", "status 3: locks itself")], refuses, loads
+    )
     assert verdict.passed
 
 
-MARCHED = {(case.case, case.asked) for case in CASES if "omega@" in case.asked and case.case != "slip 1e-12"}
+MARCHED = {
+    (case.case, case.asked)
+    for case in CASES
+    if "omega@" in case.asked and case.case != "slip 1e-12"
+}
 """Their references are those of benchmarks/speed_lines.py."""
 
 
@@ -110,22 +118,26 @@ def test_numbers_of_the_table_are_those_of_their_formulas() -> None:
     with mp.workdps(40):
         formulas = all_formulas()
         numbers = {
-            (one.case, one.asked): one.expected
-            for one in CASES
-            if one.ulp and one.expected != "reference" and (one.case, one.asked) not in MARCHED
+            (case.case, case.asked): case.expected
+            for case in CASES
+            if case.ulp and case.expected != "reference" and (case.case, case.asked) not in MARCHED
         }
         assert {at for at, number in numbers.items() if number != "0"} == set(formulas)
         assert all(abs(mpmath.mpf(numbers[at]) / formulas[at] - 1) < 1e-25 for at in formulas)
 
 
 def test_every_command_has_extreme_cases() -> None:
-    commands = "motion forces flywheel torsion balance harmonics bearings stress delivery find sweep"
+    commands = (
+        "motion forces flywheel torsion balance harmonics bearings stress delivery find sweep"
+    )
     assert {case.asked.split()[0] for case in CASES} == set(commands.split())
 
 
 def test_faults_of_reading_are_refused() -> None:
     """They are no extremes; the messages are those of `tests/refused.txt`."""
-    lines = (Path(__file__).parent / "reading_faults.tsv").read_text(encoding="utf-8").splitlines()[1:]
+    lines = (
+        (Path(__file__).parent / "reading_faults.tsv").read_text(encoding="utf-8").splitlines()[1:]
+    )
     cases = [Probe(*line.split("\t")) for line in lines]
     assert [wrong for case in cases if (wrong := fault(case))] == []
 

@@ -27,7 +27,9 @@ def rows() -> list[Trial]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(trials, "timed", lambda run, quick: (1.0, 1.0))
         patch.setattr(trials, "scipy_integrate", lambda: None)  # whose quad takes seconds
-        machine = loads(SMOOTH.replace("flywheel", f"friction: {{crosshead: 0.05, {RINGS}}}, flywheel"))
+        machine = loads(
+            SMOOTH.replace("flywheel", f"friction: {{crosshead: 0.05, {RINGS}}}, flywheel")
+        )
         return examined(machine, np.arange(0.0, 361.0, 10.0), True)[0]
 
 
@@ -49,11 +51,17 @@ def test_methods_converge(rows: list[Trial], quantity: str) -> None:
     assert found[fit, "8"] > found[fit, "16"]
     assert found[fit, "32"] < 1e-13
     if not by_tops:
-        assert found["Simpson's rule", "36"] > 3 * found["Simpson's rule", "360"] >= 3 * found["Simpson's rule", "3600"]
+        assert (
+            found["Simpson's rule", "36"]
+            > 3 * found["Simpson's rule", "360"]
+            >= 3 * found["Simpson's rule", "3600"]
+        )
         assert found["Gauss over the turn", "36"] > 3 * found["Gauss over the turn", "360"] > 1e-9
     if quantity[0] == "A":
         assert found["spreadsheet", "36 rows"] > 10 * found["spreadsheet", "360 rows"] > 1e-9
-    assert found["roots between the corners" if by_tops else "Gauss between the corners", "32"] < 1e-13
+    assert (
+        found["roots between the corners" if by_tops else "Gauss between the corners", "32"] < 1e-13
+    )
 
 
 def test_evaluations_are_counted(rows: list[Trial]) -> None:
@@ -83,8 +91,14 @@ def row(method: str, error: float | None, time: float, quantity: str = "A_i") ->
 def test_the_fastest_rival_with_corners_has_all_digits() -> None:
     """16 roundings are all digits; where kurbel has fewer, its own error is the measure."""
     own = row("kurbel", 1e-17, 2.0)
-    slow, fast = row("Gauss between the corners", 1e-16, 1.0), row("Chebyshev fit between the corners", 1e-15, 0.5)
-    rough, lost = row("Gauss between the corners", 1e-14, 0.1), row("Gauss between the corners", None, 0.1)
+    slow, fast = (
+        row("Gauss between the corners", 1e-16, 1.0),
+        row("Chebyshev fit between the corners", 1e-15, 0.5),
+    )
+    rough, lost = (
+        row("Gauss between the corners", 1e-14, 0.1),
+        row("Gauss between the corners", None, 0.1),
+    )
     blind = row("trapezium rule", 1e-17, 0.1)
     assert with_corners([own, slow, fast, rough, lost, blind]) == [(fast, 0.25)]
     assert with_corners([own._replace(error=1e-13), rough]) == [(rough, 0.05)]
@@ -109,7 +123,9 @@ def test_rivals_without_corners_are_compared_at_the_time_of_kurbel() -> None:
         ),
         (SMOOTH.replace("slip: 0.2}", "slip: 0.2}, efficiency: 0.9"), "ΔE", "an efficiency"),
         (
-            SMOOTH.replace("flywheel:", "friction: {crank_pin: 0.1, crank_pin_diameter: 100 mm}, flywheel:"),
+            SMOOTH.replace(
+                "flywheel:", "friction: {crank_pin: 0.1, crank_pin_diameter: 100 mm}, flywheel:"
+            ),
             "A_i",
             "pins that rub",
         ),
@@ -127,18 +143,28 @@ def test_rivals_without_corners_are_compared_at_the_time_of_kurbel() -> None:
             "ΔE",
             "a yoke that rubs",
         ),
-        ("{speed: 60 rpm, effort: {unit: N m, points: [[0, 1], [360, 1]]}}", "ΔE", "a given turning effort"),
+        (
+            "{speed: 60 rpm, effort: {unit: N m, points: [[0, 1], [360, 1]]}}",
+            "ΔE",
+            "a given turning effort",
+        ),
     ],
 )
-def test_what_has_no_reference_is_named(text: str, what: str, why: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_has_no_reference_is_named(
+    text: str, what: str, why: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(trials, "timed", lambda run, quick: (1.0, 1.0))
     _, lacking = examined(loads(text), np.arange(3.0), True)
     assert any(what in quantities and why in reason for reason, quantities in lacking.items())
 
 
 def test_every_thing_left_out_saves_functions() -> None:
-    machine = loads(SMOOTH.replace("flywheel", "friction: {crosshead: 0.05}, inclination: 0 deg, flywheel"))
-    found = list(savings(machine, lambda one: Case(one).cylinders[0].at(np.arange(0.0, 361.0, 10.0)).T, True))
+    machine = loads(
+        SMOOTH.replace("flywheel", "friction: {crosshead: 0.05}, inclination: 0 deg, flywheel")
+    )
+    found = list(
+        savings(machine, lambda one: Case(one).cylinders[0].at(np.arange(0.0, 361.0, 10.0)).T, True)
+    )
     assert [one.machine for one in found] == [
         "everything",
         "no friction",
@@ -150,7 +176,10 @@ def test_every_thing_left_out_saves_functions() -> None:
     assert counts == sorted(counts, reverse=True)
     assert counts[0] > counts[-1] > 0
     assert found[0].ratio == 1.0
-    bare = [one.machine for one in savings(loads(BARE), lambda one: Case(one).cylinders[0].at([0.0]), True)]
+    bare = [
+        saving.machine
+        for saving in savings(loads(BARE), lambda one: Case(one).cylinders[0].at([0.0]), True)
+    ]
     assert bare == ["everything", "no speed either: positions alone"]
 
 

@@ -11,7 +11,15 @@ from kurbel.accuracy import marching
 from kurbel.accuracy.extremes import table
 from kurbel.accuracy.marching import Marched, Problem, rivals
 from kurbel.accuracy.methods import mp
-from kurbel.accuracy.shaft import MOST, TextbookShaft, collocation, in_floats, periodic, speed_of, without_reference
+from kurbel.accuracy.shaft import (
+    MOST,
+    TextbookShaft,
+    collocation,
+    in_floats,
+    periodic,
+    speed_of,
+    without_reference,
+)
 from kurbel.accuracy.stiff import examined_speed, reference_of, speed_by_kurbel
 from kurbel.accuracy.textbook import DIGITS
 from kurbel.solver.case import Case
@@ -57,7 +65,9 @@ def test_the_load_takes_what_the_torque_gives(text: str, load: str) -> None:
     shaft = shaft_of(text.replace("LOAD", load))
     equation = in_floats(shaft.equation)
     mesh = periodic(equation, shaft.fits.at, shaft.edges.astype(float), 14)
-    w = np.asarray(equation.speed(mesh.energy, list(mesh.y[:, :, 1:])) if text == ENGINE else mesh.y[2][:, 1:])
+    w = np.asarray(
+        equation.speed(mesh.energy, list(mesh.y[:, :, 1:])) if text == ENGINE else mesh.y[2][:, 1:]
+    )
     weights = collocation(14)[1][-1].astype(float)
     means = equation.load.torque(w) @ weights
     assert means @ np.diff(mesh.edges) / 360 == pytest.approx(equation.load.mean, rel=1e-7)
@@ -91,7 +101,9 @@ def test_the_reference_is_that_of_another_method(shaft: TextbookShaft) -> None:
     assert omega == pytest.approx(exact.omega.astype(float), rel=1e-9)
 
 
-def test_rivals_converge_to_the_periodic_speed(shaft: TextbookShaft, runs: dict[tuple[str, str], Marched]) -> None:
+def test_rivals_converge_to_the_periodic_speed(
+    shaft: TextbookShaft, runs: dict[tuple[str, str], Marched]
+) -> None:
     truth = speed_by_kurbel(MachineTurning(Case(loads(SLIP)).effort)).omega
 
     def missed(*names: str) -> float:
@@ -99,11 +111,19 @@ def test_rivals_converge_to_the_periodic_speed(shaft: TextbookShaft, runs: dict[
         assert speed is not None
         return float(np.abs(speed.omega / truth - 1).max())
 
-    assert missed("RK4 marched", "36") > 30 * missed("RK4 marched", "360") > 30 * missed("RK4 marched", "1800")
-    assert missed("RK4 by shooting", "1800") == pytest.approx(missed("RK4 marched", "1800"), rel=0.1, abs=1e-12)
+    assert (
+        missed("RK4 marched", "36")
+        > 30 * missed("RK4 marched", "360")
+        > 30 * missed("RK4 marched", "1800")
+    )
+    assert missed("RK4 by shooting", "1800") == pytest.approx(
+        missed("RK4 marched", "1800"), rel=0.1, abs=1e-12
+    )
     if marching.scipy_integrate():
         for method in ("RK45", "LSODA"):
-            assert missed(f"{method} marched", "1e-03") > missed(f"{method} marched", "1e-09") < 1e-5
+            assert (
+                missed(f"{method} marched", "1e-03") > missed(f"{method} marched", "1e-09") < 1e-5
+            )
 
 
 def test_failures_are_named() -> None:

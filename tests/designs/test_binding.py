@@ -24,15 +24,29 @@ cylinders:
 @pytest.mark.parametrize(
     ("text", "inputs", "columns"),
     [
-        (BANKS, {"cylinders.bank_angles.1": "60 deg,120 deg,-60 deg,359 deg,0 deg,90 deg"}, ["M_max", "dE"]),
+        (
+            BANKS,
+            {"cylinders.bank_angles.1": "60 deg,120 deg,-60 deg,359 deg,0 deg,90 deg"},
+            ["M_max", "dE"],
+        ),
         (BANKS, {"cylinders.each.stroke": "80 mm,90 mm"}, ["M_max", "dE"]),
-        (PINS, {"cylinders.crank_positions.2": "90 deg,240 deg,450 deg,360 deg,-30 deg"}, ["M_max", "dE"]),
+        (
+            PINS,
+            {"cylinders.crank_positions.2": "90 deg,240 deg,450 deg,360 deg,-30 deg"},
+            ["M_max", "dE"],
+        ),
         (LISTED, {"cylinders.1.crank_position": "0 deg,90 deg,450 deg"}, ["M_max", "dE"]),
-        (LIKE, {"cylinders.0.bore": "2 m,3 m,4 m", "cylinders.1.masses.piston": "5 kg,6 kg,-6 kg"}, ["P_max"]),
+        (
+            LIKE,
+            {"cylinders.0.bore": "2 m,3 m,4 m", "cylinders.1.masses.piston": "5 kg,6 kg,-6 kg"},
+            ["P_max"],
+        ),
     ],
     ids=["bank angles", "stroke", "crank positions", "a crank position", "like another"],
 )
-def test_each_row_is_the_machine_with_its_values(text: str, inputs: dict[str, str], columns: Sequence[str]) -> None:
+def test_each_row_is_the_machine_with_its_values(
+    text: str, inputs: dict[str, str], columns: Sequence[str]
+) -> None:
     """What a bank angle leaves open, the turn in which a cylinder fires, each row decides for itself."""
     rows = {key: values.split(",") for key, values in inputs.items()}
     together = sweep(text, rows, columns)
@@ -42,12 +56,14 @@ def test_each_row_is_the_machine_with_its_values(text: str, inputs: dict[str, st
             if name == "failure":
                 assert values[row] == alone[name][0]
             else:
-                assert np.asarray(values[row]) == pytest.approx(np.asarray(alone[name][0]), rel=1e-12, nan_ok=True), (
-                    name
-                )
+                assert np.asarray(values[row]) == pytest.approx(
+                    np.asarray(alone[name][0]), rel=1e-12, nan_ok=True
+                ), name
 
 
 def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
     found = sweep(LIKE, {"cylinders.0.bore": ["2 m", "3 m"]}, ["A_head"])
     areas = [found[f"{name}.A_head"] for name in "abc"]
-    assert areas == [pytest.approx(np.pi / 4 * np.array(bores) ** 2) for bores in ([2, 3], [2, 3], [2, 2])]
+    assert areas == [
+        pytest.approx(np.pi / 4 * np.array(bores) ** 2) for bores in ([2, 3], [2, 3], [2, 2])
+    ]

@@ -39,7 +39,9 @@ class Cluster:
         command = [sys.executable, "-m", f"distributed.cli.{module}", "--no-dashboard", *options]
         command += ["--scheduler-file", str(self._file)]
         quiet = subprocess.DEVNULL
-        self.processes.append(subprocess.Popen(command, stdout=quiet, stderr=quiet, cwd=self._file.parent))
+        self.processes.append(
+            subprocess.Popen(command, stdout=quiet, stderr=quiet, cwd=self._file.parent)
+        )
 
     def _client(self) -> Any:
         return distributed.Client(scheduler_file=str(self._file), timeout=60, set_as_default=False)
@@ -72,7 +74,9 @@ def test_a_killed_worker_loses_no_row(cluster: Cluster, tmp_path: Path) -> None:
     process = in_the_midst(cluster, file)
     os.kill(cluster.processes[1].pid, signal.SIGKILL)
     assert (process.communicate(timeout=300)[1], process.returncode) == ("", 0)
-    alone = subprocess.run([*SWEEP, "rod_ratio=3:6:0.0002", "-f", "csv"], capture_output=True, check=True).stdout
+    alone = subprocess.run(
+        [*SWEEP, "rod_ratio=3:6:0.0002", "-f", "csv"], capture_output=True, check=True
+    ).stdout
     assert file.read_bytes() == alone
     assert alone.count(b"\n") == 15_002
 
@@ -100,7 +104,10 @@ def test_a_cluster_without_workers_is_waited_for(cluster: Cluster) -> None:
     process = subprocess.Popen(asked, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     limited(process, 300)
     assert process.stderr
-    assert process.stderr.readline() == f"--dask {cluster.address}: the cluster has no workers; waiting for one\n"
+    assert (
+        process.stderr.readline()
+        == f"--dask {cluster.address}: the cluster has no workers; waiting for one\n"
+    )
     cluster.add_workers(1)
     stdout, stderr = process.communicate(timeout=300)
     assert (process.returncode, stderr, stdout.count("\n")) == (0, "", 3)

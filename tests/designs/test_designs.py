@@ -48,7 +48,10 @@ def test_grid_list_and_sample() -> None:
 
 
 def test_a_number_in_a_unit_is_read_as_its_text() -> None:
-    for kind, unit in [("ratio", "%"), *((one, unit) for one in kinds() for unit in unit_names(one))]:
+    for kind, unit in [
+        ("ratio", "%"),
+        *((one, unit) for one in kinds() for unit in unit_names(one)),
+    ]:
         one = Input("x", (), (12.5, 3, 0.1, -2.25), unit)
         texts = Input("x", tuple(map(one.text, range(4))))
         assert numbers_of(one, kind).tobytes() == numbers_of(texts, kind).tobytes(), (kind, unit)
@@ -63,10 +66,14 @@ def test_shards_are_the_whole() -> None:
             shard(wrong, 10)
 
 
-def test_a_text_varies_in_the_folder_that_it_was_read_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_text_varies_in_the_folder_that_it_was_read_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Its name stands for the file in messages alone, a folder in it is none of its traces."""
     monkeypatch.chdir(tmp_path)
-    Path("trace.csv").write_text("".join(f"{angle},{5 + angle % 7}\n" for angle in range(0, 361, 10)))
+    Path("trace.csv").write_text(
+        "".join(f"{angle},{5 + angle % 7}\n" for angle in range(0, 361, 10))
+    )
     trace = "trace: {file: trace.csv, unit: bar}"
     text = f"{{crank: 0.2 m, rod_ratio: 5, bore: 0.1 m, indicator: {{head_end: {{{trace}}}}}}}"
     machine = kurbel.loads(text, name="elsewhere/machine.yaml")

@@ -9,7 +9,7 @@ import pytest
 
 from command import run
 from kurbel.arrays import Array
-from kurbel.designs.find import Solutions, find
+from kurbel.designs.find import Solutions, find_solutions
 from kurbel.machine_file.source import decode, read
 from kurbel.numerics.search import lowest
 from kurbel.render.sweep_rows import picture
@@ -18,18 +18,22 @@ from representative import CONFIGS
 
 
 def found_in(name: str, vary: str, *equations: str, **how: object) -> Solutions:
-    return find(read(CONFIGS[name]), vary.split("; "), equations, **how)  # type: ignore[arg-type]
+    return find_solutions(read(CONFIGS[name]), vary.split("; "), equations, **how)  # type: ignore[arg-type]
 
 
 def test_the_flywheel_of_a_fluctuation_is_the_one_that_kurbel_gives() -> None:
     """J_δ,ω of `kurbel flywheel` is found by another way: Newton's method on the speed line of one machine."""
-    found = found_in("waterworks-two-cranks", "flywheel.inertia=10000:80000 kg m2", "delta = 1/50").found
+    found = found_in(
+        "waterworks-two-cranks", "flywheel.inertia=10000:80000 kg m2", "delta = 1/50"
+    ).found
     told = json.loads(run("flywheel", str(CONFIGS["waterworks-two-cranks"]), "-f", "json").stdout)
     by_id = {one["id"]: one["value"] for one in told["machine_key_values"]}
     assert [one.values[0] for one in found] == pytest.approx([by_id["J_exact"]], rel=1e-9)
 
 
-def test_of_many_designs_none_that_stalls_searches_the_flywheel_that_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_many_designs_none_that_stalls_searches_the_flywheel_that_would_do(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """That search takes 40 times as long as the design; only the message of a single machine shows its result."""
     machine, key = str(CONFIGS["punch"]), "flywheel.inertia"
     alone = run("flywheel", machine, "--set", f"{key}=3 kg m2")
@@ -37,7 +41,9 @@ def test_of_many_designs_none_that_stalls_searches_the_flywheel_that_would_do(mo
     assert alone.exit_code == 3
     assert remedy.startswith(" it runs with a flywheel from J = ")
     monkeypatch.delattr(MachineTurning, "_enough")
-    swept = run("sweep", machine, "--vary", f"{key}=3 kg m2, 200 kg m2", "--columns", "delta", "-f", "json")
+    swept = run(
+        "sweep", machine, "--vary", f"{key}=3 kg m2, 200 kg m2", "--columns", "delta", "-f", "json"
+    )
     assert [json.loads(row)["failure"] for row in swept.stdout.splitlines()] == [reason, None]
     assert found_in("punch", f"{key}=0:1000 kg m2", "delta = 0.05").found
 
@@ -56,7 +62,9 @@ def test_the_offset_of_least_guide_force() -> None:
 
 def test_a_greatest_value_is_at_the_bound_of_a_condition() -> None:
     """c_m = 2 s n: at 50/min and 1.5 m/s the stroke is 0.9 m."""
-    found = found_in("waterworks", "stroke=600:1000 mm", greatest="power", conditions=["c_m < 1.5 m/s"]).found[0]
+    found = found_in(
+        "waterworks", "stroke=600:1000 mm", greatest="power", conditions=["c_m < 1.5 m/s"]
+    ).found[0]
     assert found.values[0] == pytest.approx(0.9, rel=1e-9)
     assert found.notes == ("beyond it: c_m < 1.5 m/s",)
 
@@ -73,14 +81,18 @@ def test_a_range_in_percent_is_one_of_shares(span: str) -> None:
     indicator = f"indicator: {{pressures: absolute, head_end: {{{card}}}}}"
     text = f"{{speed: 1 1/s, stroke: 1 m, rod_ratio: 4, bore: 1 m, {indicator}}}"
     vary = f"indicator.head_end.compressor.clearance={span}"
-    ended = run("find", "-", "--vary", vary, "volumetric_efficiency = 50 %", "-f", "json", text=text)
+    ended = run(
+        "find", "-", "--vary", vary, "volumetric_efficiency = 50 %", "-f", "json", text=text
+    )
     (found,) = json.loads(ended.stdout)["found"]
     assert found["values"] == pytest.approx([0.5 / (4 ** (1 / 1.3) - 1)], rel=1e-9)
 
 
 def test_two_planted_values_are_found_again() -> None:
     """A machine with s = 0.8 m and L/R = 5 has these T_max and N_max: both equations give its sizes back."""
-    case = json.loads(run("forces", str(CONFIGS["waterworks"]), "-f", "json", "--set", "rod_ratio=5").stdout)
+    case = json.loads(
+        run("forces", str(CONFIGS["waterworks"]), "-f", "json", "--set", "rod_ratio=5").stdout
+    )
     by_id = {one["id"]: one["value"] for one in case["cylinders"][0]["key_values"]}
     equations = [f"{id} = {by_id[id]!r} N" for id in ("T_max", "N_max")]
     found = found_in("waterworks", "stroke=600:1000 mm; rod_ratio=4:8", *equations).found
@@ -89,9 +101,11 @@ def test_two_planted_values_are_found_again() -> None:
 
 def test_all_solutions_of_a_range() -> None:
     """P_max of a vertical machine is m g sin γ + m b: the angles on both sides of 90° give the same."""
-    text = "{stroke: 1 m, rod_ratio: 5, speed: 60 rpm, masses: {piston: 100 kg}, inclination: 90 deg}"
+    text = (
+        "{stroke: 1 m, rod_ratio: 5, speed: 60 rpm, masses: {piston: 100 kg}, inclination: 90 deg}"
+    )
     origin = decode("<text>", text.encode())
-    found = find(origin, ["inclination=0:180 deg"], ["P_max = 2000 N"]).found
+    found = find_solutions(origin, ["inclination=0:180 deg"], ["P_max = 2000 N"]).found
     angles = [one.values[0] for one in found]
     assert len(angles) == 2
     assert sum(angles) == pytest.approx(180.0, abs=1e-6)
@@ -100,7 +114,9 @@ def test_all_solutions_of_a_range() -> None:
 def test_parts_of_the_range_that_fail_are_reported() -> None:
     found = found_in("waterworks", "rod_ratio=0.5:8", "N_max = 20 kN")
     assert found.failed[0].low == 0.5
-    assert found.failed[0].high == pytest.approx(1.01**0.5, abs=1e-9)  # to 1 by the rule, beyond it the crosshead locks
+    assert found.failed[0].high == pytest.approx(
+        1.01**0.5, abs=1e-9
+    )  # to 1 by the rule, beyond it the crosshead locks
     assert "must be more than 1" in found.failed[0].why
     assert len(found.found) == 1
 
@@ -112,12 +128,19 @@ def test_the_written_file_has_what_was_wanted(tmp_path: Path) -> None:
     new = tmp_path / "new.yaml"
     new.write_text(written.stdout, encoding="utf-8")
     told = json.loads(run("flywheel", str(new), "-f", "json").stdout)
-    assert {one["id"]: one["value"] for one in told["machine_key_values"]}["delta"] == pytest.approx(1 / 80, rel=1e-10)
-    comments = [line for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
+    assert {one["id"]: one["value"] for one in told["machine_key_values"]}[
+        "delta"
+    ] == pytest.approx(1 / 80, rel=1e-10)
+    comments = [
+        line for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("#")
+    ]
     assert [line for line in written.stdout.splitlines() if line.startswith("#")] == comments
     row = run(*asked, "-f", "csv").stdout.splitlines()
     assert row[0] == "row,flywheel.inertia_kgm2,delta"
-    assert float(row[1].split(",")[1]) == json.loads(run(*asked, "-f", "json").stdout)["found"][0]["values"][0]
+    assert (
+        float(row[1].split(",")[1])
+        == json.loads(run(*asked, "-f", "json").stdout)["found"][0]["values"][0]
+    )
 
 
 def test_of_several_solutions_one_is_taken() -> None:
@@ -142,11 +165,20 @@ def test_the_key_value_is_drawn_over_the_key(tmp_path: Path) -> None:
     assert curve.jumps() == []
     assert np.nanmin(curve.x) > 1.01**0.5  # below, the crosshead locks itself
     assert wanted.y.tolist() == [20.0, 20.0]
-    assert [(mark.x, mark.y) for mark in panel.marks] == [(found.found[0].values[0], pytest.approx(20.0))]
+    assert [(mark.x, mark.y) for mark in panel.marks] == [
+        (found.found[0].values[0], pytest.approx(20.0))
+    ]
     level = picture(found_in("waterworks", "speed=40:60 rpm", least="stroke"), "metric")
     assert len(level.panels[0].curves) == 1
 
-    arguments = "find", str(CONFIGS["waterworks"]), "--vary", "rod_ratio=3:8", "N_max = 20 kN", "--plot"
+    arguments = (
+        "find",
+        str(CONFIGS["waterworks"]),
+        "--vary",
+        "rod_ratio=3:8",
+        "N_max = 20 kN",
+        "--plot",
+    )
     assert "rod_ratio 4.123" in run(*arguments).stdout
     file = tmp_path / "found.svg"
     assert run(*arguments, "-o", str(file)).exit_code == 0
@@ -155,7 +187,9 @@ def test_the_key_value_is_drawn_over_the_key(tmp_path: Path) -> None:
 
 def banana(steep: float) -> Callable[[Array], Array]:
     """Rosenbrock's valley over [−2, 2]², lifted to 1; its lowest place is (1, 1)."""
-    return lambda at: 1 + (3 - 4 * at[:, 0]) ** 2 + steep * (4 * at[:, 1] - 2 - (4 * at[:, 0] - 2) ** 2) ** 2
+    return lambda at: (
+        1 + (3 - 4 * at[:, 0]) ** 2 + steep * (4 * at[:, 1] - 2 - (4 * at[:, 0] - 2) ** 2) ** 2
+    )
 
 
 @pytest.mark.parametrize(
@@ -164,13 +198,21 @@ def banana(steep: float) -> Callable[[Array], Array]:
         (banana(1e2), (0.75, 0.75)),
         (banana(1e6), (0.75, 0.75)),
         (
-            lambda at: 1 + (at[:, 0] - 0.3) ** 2 + 1e4 * (at[:, 1] - np.sin(3 * at[:, 0]) ** 2) ** 2,
+            lambda at: (
+                1 + (at[:, 0] - 0.3) ** 2 + 1e4 * (at[:, 1] - np.sin(3 * at[:, 0]) ** 2) ** 2
+            ),
             (0.3, np.sin(0.9) ** 2),
         ),
-        (lambda at: 1 + (at[:, 0] - 0.37) ** 2 + 30 * abs(at[:, 1] - np.sin(2 * at[:, 0])), (0.37, np.sin(0.74))),
+        (
+            lambda at: 1 + (at[:, 0] - 0.37) ** 2 + 30 * abs(at[:, 1] - np.sin(2 * at[:, 0])),
+            (0.37, np.sin(0.74)),
+        ),
         (lambda at: 1 + abs(at[:, 0] - 0.41) + 3 * abs(at[:, 1] - 0.7 * at[:, 0]), (0.41, 0.287)),
         (lambda at: 1 + at[:, 0] + (at[:, 1] - 0.2) ** 2, (0.0, 0.2)),
-        (lambda at: np.where(at.sum(axis=1) < 1, 1 + ((at - 1) ** 2).sum(axis=1), np.nan), (0.5, 0.5)),
+        (
+            lambda at: np.where(at.sum(axis=1) < 1, 1 + ((at - 1) ** 2).sum(axis=1), np.nan),
+            (0.5, 0.5),
+        ),
     ],
 )
 def test_the_lowest_place_of_narrow_curved_valleys(
@@ -185,9 +227,18 @@ def test_the_lowest_place_of_narrow_curved_valleys(
 
 def test_an_end_of_the_range_may_fail_by_what_is_wanted() -> None:
     """The vessel of this end would empty: ΔV/2 is 11.3 cm³."""
-    found = found_in("triplex-pump", "pump.delivery_pipe.vessel.volume=0.001:10 l", "vessel_swing = 1 %")
+    found = found_in(
+        "triplex-pump", "pump.delivery_pipe.vessel.volume=0.001:10 l", "vessel_swing = 1 %"
+    )
     assert len(found.found) == 1
     assert "would empty" in found.failed[0].why
-    vary = ("--vary", "pump.delivery_pipe.vessel.volume=0.001,1 l", "--columns", "vessel_swing", "-f", "csv")
+    vary = (
+        "--vary",
+        "pump.delivery_pipe.vessel.volume=0.001,1 l",
+        "--columns",
+        "vessel_swing",
+        "-f",
+        "csv",
+    )
     ran = run("sweep", str(CONFIGS["triplex-pump"]), *vary)
     assert [("would empty" in line) for line in ran.stdout.splitlines()] == [False, True, False]

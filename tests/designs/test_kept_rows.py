@@ -34,7 +34,11 @@ def interrupted(machine: Path, *args: str, rows: int = 6) -> Path:
     """Return a file with the first rows of a sweep."""
     file = machine.with_name("rows.json" if "json" in args else "rows.csv")
     file.write_text(
-        "".join(swept(machine.read_text(), ("-f", file.suffix[1:], *args))[: rows + (file.suffix == ".csv")])
+        "".join(
+            swept(machine.read_text(), ("-f", file.suffix[1:], *args))[
+                : rows + (file.suffix == ".csv")
+            ]
+        )
     )
     return file
 
@@ -53,7 +57,9 @@ def interrupted(machine: Path, *args: str, rows: int = 6) -> Path:
         (("--columns", "c_max"), ""),
     ],
 )
-def test_another_sweep_does_not_go_on(machine: Path, written: str, others: tuple[str, ...], message: str) -> None:
+def test_another_sweep_does_not_go_on(
+    machine: Path, written: str, others: tuple[str, ...], message: str
+) -> None:
     file = interrupted(machine, *ASKED, "-f", written)
     before = file.read_bytes()
     asked = others if others[0] == "--vary" else ASKED[:2] + others
@@ -99,8 +105,12 @@ MANY = ("--vary", "rod_ratio=3:6:0.1", "--columns", "c_max")
 
 
 @pytest.mark.usefixtures("lost")
-def test_an_early_end_leaves_the_old_file_and_a_part(machine: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = "".join(swept(machine.read_text(), (*MANY[:1], "rod_ratio=3:4.9:0.1", *MANY[2:], "-f", "csv")))
+def test_an_early_end_leaves_the_old_file_and_a_part(
+    machine: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = "".join(
+        swept(machine.read_text(), (*MANY[:1], "rod_ratio=3:4.9:0.1", *MANY[2:], "-f", "csv"))
+    )
     file, link = machine.with_name("rows.csv"), machine.with_name("link.csv")
     file.write_text("old")
     file.chmod(0o640)

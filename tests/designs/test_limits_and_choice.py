@@ -10,7 +10,7 @@ RATIOS = ("--vary", "rod_ratio=0.5,3,4,5,6")
 
 
 def numbers(*args: str) -> list[object]:
-    return [one["row"] for one in rows(*args)]
+    return [row["row"] for row in rows(*args)]
 
 
 def test_a_limit_that_cannot_be_judged_is_not_kept() -> None:
@@ -19,9 +19,17 @@ def test_a_limit_that_cannot_be_judged_is_not_kept() -> None:
     (found,) = rows("--vary", "rod_ratio=5", "--columns", "N_max", *delta)
     assert (found["keeps"], found["broken"]) == (None, None)
     assert found["failure"] == "limits.delta: this machine has no delta"
-    assert found["N_max_N"] == pytest.approx(kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]["N_max"].value)
-    (broken,) = rows("--vary", "rod_ratio=5", "--columns", "N_max", *delta, "--set", "limits.N_max=16 kN")
-    assert (broken["keeps"], broken["broken"], broken["failure"]) == (False, "N_max", found["failure"])
+    assert found["N_max_N"] == pytest.approx(
+        kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]["N_max"].value
+    )
+    (broken,) = rows(
+        "--vary", "rod_ratio=5", "--columns", "N_max", *delta, "--set", "limits.N_max=16 kN"
+    )
+    assert (broken["keeps"], broken["broken"], broken["failure"]) == (
+        False,
+        "N_max",
+        found["failure"],
+    )
     judged = rows("--vary", "flywheel.inertia=1e4,5e4 kg m2", "--columns", "N_max", *delta)
     assert [(one["keeps"], one["failure"]) for one in judged] == [(False, None), (True, None)]
 
@@ -29,7 +37,11 @@ def test_a_limit_that_cannot_be_judged_is_not_kept() -> None:
 def test_rows_are_chosen_by_their_texts() -> None:
     asked = (*RATIOS, "--columns", "N_max", "--set", "limits.N_max=20 kN")
     assert numbers(*asked, "--where", "keeps = yes") == [4, 5]
-    assert numbers(*asked, "--where", "keeps == no") == numbers(*asked, "--where", "broken = N_max") == [2, 3]
+    assert (
+        numbers(*asked, "--where", "keeps == no")
+        == numbers(*asked, "--where", "broken = N_max")
+        == [2, 3]
+    )
     assert numbers(*asked, "--where", "failure =") == [2, 3, 4, 5]
     assert numbers(*asked, "--where", "failure ≠") == [1]
 
@@ -47,20 +59,26 @@ def test_an_infinite_rod_is_the_longest() -> None:
 
 def test_rows_are_chosen_by_printed_symbols() -> None:
     asked = (*RATIOS, "--columns", "dE,P_start_max")
-    assert numbers(*asked, "--sort", "-ΔE", "--top", "1") == numbers(*asked, "--pareto", "-ΔE") == [2]
+    assert (
+        numbers(*asked, "--sort", "-ΔE", "--top", "1") == numbers(*asked, "--pareto", "-ΔE") == [2]
+    )
     assert numbers(*asked, "--where", "P_0,max ≥ 1 N", "--where", "rod_ratio ≤ 4") == [2, 3]
-    of_machine = rows(*RATIOS, "--columns", "machine.T_max", "--sort", "-machine.T_max", "--top", "1")
+    of_machine = rows(
+        *RATIOS, "--columns", "machine.T_max", "--sort", "-machine.T_max", "--top", "1"
+    )
     assert [(one["row"], "machine.T_max_N" in one) for one in of_machine] == [(2, True)]
     assert numbers(*RATIOS, "--columns", "machine.dE", "--sort", "-machine.ΔE", "--top", "1") == [2]
     compressor = str(CONFIGS["compressor-two-stage"])
     by_symbol = ("--vary", "speed=300,500 rpm", "--columns", "p_i", "--sort", "low pressure.p_i")
-    assert [one["row"] for one in rows(*by_symbol, file=compressor)]
+    assert [row["row"] for row in rows(*by_symbol, file=compressor)]
 
 
 def test_every_extreme_has_its_angle() -> None:
     """Not of `forces` alone: ω_max of the speed line, loads and stresses stand somewhere, too."""
     file = str(CONFIGS["gas-engine"])
-    (found,) = rows("--vary", "speed=200 rpm", "--columns", "P_dc,sigma_pin_max,E_max,dE", "--angles", file=file)
+    (found,) = rows(
+        "--vary", "speed=200 rpm", "--columns", "P_dc,sigma_pin_max,E_max,dE", "--angles", file=file
+    )
     case = kurbel.solve(kurbel.load(file, ["speed=200 rpm"]))
     assert found["E_max_at_deg"] == case["E_max"].degrees
     assert found["sigma_pin_max_at_deg"] == case["sigma_pin_max"].degrees

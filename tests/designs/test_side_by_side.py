@@ -15,7 +15,11 @@ from representative import SHIPPED, few
 from swept_rows import CONFIGS, EXAMPLES, numbers_in
 
 MOVING = re.compile(r"(.*\.)?(crank|stroke)")
-FILES = [path for path in (*SHIPPED, *EXAMPLES) if any(MOVING.fullmatch(key) for key, *_ in numbers_in(read(path)))]
+FILES = [
+    path
+    for path in (*SHIPPED, *EXAMPLES)
+    if any(MOVING.fullmatch(key) for key, *_ in numbers_in(read(path)))
+]
 
 
 def distance(found: Any, single: Any, name: str) -> float:
@@ -35,8 +39,13 @@ def farthest(file: Path, inputs: dict[str, list[str]], columns: list[str]) -> tu
     together, worst = sweep(file, inputs, columns, with_angles=True), (0.0, "")
     answers = [(name, values) for name, values in together.items() if not name.endswith("residual")]
     for row in range(5):
-        alone = sweep(file, {key: [texts[row]] for key, texts in inputs.items()}, columns, with_angles=True)
-        worst = max(worst, *((distance(values[row], alone[name][0], name), name) for name, values in answers))
+        alone = sweep(
+            file, {key: [texts[row]] for key, texts in inputs.items()}, columns, with_angles=True
+        )
+        worst = max(
+            worst,
+            *((distance(values[row], alone[name][0], name), name) for name, values in answers),
+        )
     return worst
 
 
@@ -47,7 +56,8 @@ def test_numbers_of_a_file_vary(file: Path) -> None:
     keys = numbers_in(read(file))
     chosen = [keys[place] for place in random.permutation(len(keys))[:4]]
     inputs = {
-        key: [f"{value * by:.9g} {unit}".strip() for by in random.uniform(0.9, 1.1, 5)] for key, value, unit in chosen
+        key: [f"{value * by:.9g} {unit}".strip() for by in random.uniform(0.9, 1.1, 5)]
+        for key, value, unit in chosen
     }
     assert farthest(file, inputs, []) <= (1e-12, "~")
 
@@ -58,17 +68,47 @@ FLOWS = "flow_mean flow_max volume_fluctuation vessel_swing suction_lift_max acc
 STRESSES = "sigma_pin_max sigma_web_A_max safety_pin_min load_max load_mean unloaded_arc"
 OTHER_COMMANDS = [
     ("gas-engine", "speed", SPEEDS, f"dE M_max {STRESSES} F_free_max"),
-    ("four-cylinder-generator", "speed", SPEEDS, "dE delta J omega_max alpha_max M_max E_max work_shaft"),
+    (
+        "four-cylinder-generator",
+        "speed",
+        SPEEDS,
+        "dE delta J omega_max alpha_max M_max E_max work_shaft",
+    ),
     ("four-in-line", "speed", SPEEDS, "F_free_max F_free_best M_free_max M_roll_max"),
-    ("locomotive-two-cylinders", "speed", SPEEDS, "hammer_blow swaying_couple traction_variation F_free_best"),
+    (
+        "locomotive-two-cylinders",
+        "speed",
+        SPEEDS,
+        "hammer_blow swaying_couple traction_variation F_free_best",
+    ),
     ("waterworks", "speed", SPEEDS, "piston.power pump.power power"),
     ("generator-coupling", "speed", SPEEDS, "delta M_coupling_max amplification natural_order"),
     ("triplex-pump", "speed", ["50 rpm", "60 rpm", "70 rpm", "80 rpm", "90 rpm"], FLOWS),
-    ("triplex-pump", "cylinders.each.bore", [f"{bore} mm" for bore in (76, 78, 80, 82, 84)], f"{FLOWS} work dE"),
+    (
+        "triplex-pump",
+        "cylinders.each.bore",
+        [f"{bore} mm" for bore in (76, 78, 80, 82, 84)],
+        f"{FLOWS} work dE",
+    ),
     ("compressor-two-stage", "gas.isentropic_exponent", ["1.3", "1.35", "1.4", "1.45", "1.5"], GAS),
-    ("compressor-two-stage", "gas.molar_mass", [f"{mass} g/mol" for mass in (28, 28.5, 29, 29.5, 30)], GAS),
-    ("compressor-two-stage", "gas.inlet_temperature", [f"{warm} °C" for warm in (10, 15, 20, 25, 30)], GAS),
-    ("scotch-yoke-pump", "friction.block", ["0", "0.03", "0.07", "0.1", "0.2"], "work_block loss_guides T_max dE"),
+    (
+        "compressor-two-stage",
+        "gas.molar_mass",
+        [f"{mass} g/mol" for mass in (28, 28.5, 29, 29.5, 30)],
+        GAS,
+    ),
+    (
+        "compressor-two-stage",
+        "gas.inlet_temperature",
+        [f"{warm} °C" for warm in (10, 15, 20, 25, 30)],
+        GAS,
+    ),
+    (
+        "scotch-yoke-pump",
+        "friction.block",
+        ["0", "0.03", "0.07", "0.1", "0.2"],
+        "work_block loss_guides T_max dE",
+    ),
 ]
 """Key values of flywheel, stress, bearings, balance, delivery, single pistons; of a gas with arrays of numbers, too."""
 
@@ -78,7 +118,9 @@ def test_key_values_of_other_commands(name: str, key: str, values: list[str], co
     assert farthest(CONFIGS[name], {key: values}, columns.split()) <= (1e-11, "~")
 
 
-def test_one_that_locks_itself_fails_beside_others_with_the_reason_that_it_has_alone(tmp_path: Path) -> None:
+def test_one_that_locks_itself_fails_beside_others_with_the_reason_that_it_has_alone(
+    tmp_path: Path,
+) -> None:
     file = tmp_path / "steam.yaml"
     machine = CONFIGS["waterworks"].read_text("utf-8").replace("crosshead: 0.1", "crosshead: 2")
     file.write_text(f"{machine}\ninclination: 0 deg\n", encoding="utf-8")
@@ -89,7 +131,9 @@ def test_one_that_locks_itself_fails_beside_others_with_the_reason_that_it_has_a
 
 def test_flywheels_on_both_sides_of_their_bearing(tmp_path: Path) -> None:
     """Other places of the shaft are examined beyond bearing B and before it."""
-    lines = CONFIGS["gas-engine"].read_text("utf-8").partition("limits:")[0].splitlines(keepends=True)
+    lines = (
+        CONFIGS["gas-engine"].read_text("utf-8").partition("limits:")[0].splitlines(keepends=True)
+    )
     file = tmp_path / "engine.yaml"
     text = "".join(line for line in lines if "journal_length" not in line)
     file.write_text(text.replace("flywheel_mass: 4 t", "flywheel_mass: 400 t"), encoding="utf-8")
@@ -99,6 +143,8 @@ def test_flywheels_on_both_sides_of_their_bearing(tmp_path: Path) -> None:
 
 def test_a_crosshead_that_locks_itself_has_no_forces_among_others() -> None:
     """f tan ψ ≥ 1 with f = 0.1 where R/L ≥ 1/√(1 + f²), L/R ≤ 1.00499."""
-    found = sweep(CONFIGS["waterworks"], {"rod_ratio": ["1.002", "1.003", "1.004", "1.006", "5"]}, "S_max")
+    found = sweep(
+        CONFIGS["waterworks"], {"rod_ratio": ["1.002", "1.003", "1.004", "1.006", "5"]}, "S_max"
+    )
     assert ["locks itself" in why for why in found["failure"]] == [True, True, True, False, False]
     assert np.isnan(found["S_max"]).tolist() == [True, True, True, False, False]

@@ -15,8 +15,21 @@ from swept_rows import CONFIGS, WATERWORKS, rows, run, until_written
 
 
 def test_rows_are_what_forces_tells_of_each() -> None:
-    found = rows("--vary", "rod_ratio=4,5", "--vary", "speed=40,50 rpm", "--columns", "T_max,p_i,φ_P=0", "--angles")
-    assert [(one["rod_ratio"], one["row"]) for one in found] == [(4.0, 1), (4.0, 2), (5.0, 3), (5.0, 4)]
+    found = rows(
+        "--vary",
+        "rod_ratio=4,5",
+        "--vary",
+        "speed=40,50 rpm",
+        "--columns",
+        "T_max,p_i,φ_P=0",
+        "--angles",
+    )
+    assert [(one["rod_ratio"], one["row"]) for one in found] == [
+        (4.0, 1),
+        (4.0, 2),
+        (5.0, 3),
+        (5.0, 4),
+    ]
     for one, (ratio, speed) in zip(found, [(4, 40), (4, 50), (5, 40), (5, 50)]):
         machine = kurbel.load(WATERWORKS, [f"rod_ratio={ratio}", f"speed={speed} rpm"])
         single = kurbel.solve(machine).cylinders[0]
@@ -24,16 +37,25 @@ def test_rows_are_what_forces_tells_of_each() -> None:
         assert one["T_max_N"] == pytest.approx(single["T_max"].value, rel=1e-13)
         assert one["T_max_at_deg"] == pytest.approx(single["T_max"].degrees, rel=1e-11)
         assert one["mean_pressure_Pa"] == pytest.approx(single["p_i"].value, rel=1e-13)
-        assert one["phi_reversal_deg"] == pytest.approx(list(single["phi_reversal"].value), rel=1e-12)
+        assert one["phi_reversal_deg"] == pytest.approx(
+            list(single["phi_reversal"].value), rel=1e-12
+        )
         assert one["failure"] is None
 
 
 def test_keys_that_go_together_in_a_grid() -> None:
     """Bore and rod of one size beside each other, each with every speed."""
     found = rows(
-        "--vary", "bore=400,450 mm; head_end_rod=70,80 mm", "--vary", "speed=40,50 rpm", "--columns", "A_head,c_max"
+        "--vary",
+        "bore=400,450 mm; head_end_rod=70,80 mm",
+        "--vary",
+        "speed=40,50 rpm",
+        "--columns",
+        "A_head,c_max",
     )
-    assert [(one["bore_m"], one["head_end_rod_m"]) for one in found] == [(0.4, 0.07)] * 2 + [(0.45, 0.08)] * 2
+    assert [(one["bore_m"], one["head_end_rod_m"]) for one in found] == [(0.4, 0.07)] * 2 + [
+        (0.45, 0.08)
+    ] * 2
     for one in found:
         area = np.pi / 4 * (one["bore_m"] ** 2 - one["head_end_rod_m"] ** 2)
         assert one["A_head_m^2"] == pytest.approx(area, rel=1e-14)
@@ -43,7 +65,9 @@ def test_keys_that_go_together_in_a_grid() -> None:
 def test_without_a_cylinder_rows_are_what_flywheel_tells(tmp_path: Path) -> None:
     """T = 9 + 5 cos 2φ N m: ΔE = 5 N m, W = 18π J; a machine without key values of `forces` was a fault of kurbel."""
     machine = tmp_path / "effort.yaml"
-    machine.write_text("{speed: 1 1/s, effort: {unit: N m, mean: 9, harmonics: [[2, 5, 0]]}}", encoding="utf-8")
+    machine.write_text(
+        "{speed: 1 1/s, effort: {unit: N m, mean: 9, harmonics: [[2, 5, 0]]}}", encoding="utf-8"
+    )
     for one, speed in zip(rows("--vary", "speed=1,2 1/s", file=str(machine)), (1, 2), strict=True):
         assert one["dE_J"] == pytest.approx(5, rel=1e-13)
         assert one["work_shaft_J"] == pytest.approx(18 * np.pi, rel=1e-13)
@@ -54,11 +78,19 @@ def test_cylinders_that_work_alike_have_one_column_in_a_table(tmp_path: Path) ->
     """Equal ones once for people, each in csv; where a key of one of them varies they are no longer alike."""
     generator = str(CONFIGS["four-cylinder-generator"])
     sweep = ("--vary", "speed=200,300 rpm", "--columns", "T_max,dE")
-    assert run(*sweep, file=generator).stdout.split()[:4] == ["row", "speed", "cylinders", "1–4.T_max"]
+    assert run(*sweep, file=generator).stdout.split()[:4] == [
+        "row",
+        "speed",
+        "cylinders",
+        "1–4.T_max",
+    ]
     heads = run(*sweep, "-f", "csv", file=generator).stdout.splitlines()[0].split(",")
     assert heads[2:6] == [f"cylinder {n}.T_max_N" for n in (1, 2, 3, 4)]
     two, each = tmp_path / "two.yaml", "crank: 50 mm, rod_ratio: 4"
-    two.write_text(f"{{speed: 60 rpm, cylinders: [{{name: A, {each}}}, {{name: B, {each}}}]}}", encoding="utf-8")
+    two.write_text(
+        f"{{speed: 60 rpm, cylinders: [{{name: A, {each}}}, {{name: B, {each}}}]}}",
+        encoding="utf-8",
+    )
     table = run("--vary", "speed=60,90 rpm", "--columns", "c_max", file=str(two)).stdout
     assert table.split()[:5] == ["row", "speed", "A,", "B.c_max", "failure"]
     table = run("--vary", "cylinders.1.crank=50,60 mm", "--columns", "c_max", file=str(two)).stdout
@@ -79,7 +111,9 @@ def test_key_values_of_other_commands_and_limits() -> None:
         turning = kurbel.solve(kurbel.load(file, [f"flywheel.fluctuation={fluctuation}"])).flywheel
         assert (one["dE_J"], one["J_kgm^2"]) == (turning.dE, turning.J)
     limits = ("--set", "limits.c_max=2.3 m/s", "--set", "limits.b_max=15 m/s2")
-    kept = rows("--vary", "rod_ratio=3,5", "--vary", "speed=50,60 rpm", "--columns", "c_max", *limits)
+    kept = rows(
+        "--vary", "rod_ratio=3,5", "--vary", "speed=50,60 rpm", "--columns", "c_max", *limits
+    )
     assert [one["keeps"] for one in kept] == [True, False, True, False]
     assert [one["broken"] for one in kept] == [None, "c_max", None, "c_max"]
 
@@ -88,7 +122,9 @@ def test_where_sort_top_and_pareto() -> None:
     asked = ("--vary", "rod_ratio=3:6:0.5", "--columns", "c_max,b_max")
     every = {one["row"]: one for one in rows(*asked)}
     below = rows(*asked, "--where", "b_max < 13.5 m/s2")
-    assert [one["row"] for one in below] == [row for row, one in every.items() if one["b_max_m/s^2"] < 13.5]
+    assert [one["row"] for one in below] == [
+        row for row, one in every.items() if one["b_max_m/s^2"] < 13.5
+    ]
     assert [one["row"] for one in rows(*asked, "--where", "rod_ratio >= 5")] == [5, 6, 7]
     assert [one["row"] for one in rows(*asked, "--sort", "c_max", "--top", "2")] == [7, 6]
     assert [one["row"] for one in rows(*asked, "--sort", "-c_max", "--top", "1")] == [1]
@@ -102,7 +138,9 @@ def test_a_key_value_is_asked_of_one_cylinder_as_it_is_called_in_the_head() -> N
     compressor = str(CONFIGS["compressor-two-stage"])
     column, vary = "low pressure.rod_tension_max", ("--vary", "speed=300,500 rpm")
     both = rows(*vary, "--columns", "rod_tension_max", file=compressor)
-    alone = rows(*vary, "--columns", column, "--sort", column, "--where", f"{column} > 1 N", file=compressor)
+    alone = rows(
+        *vary, "--columns", column, "--sort", column, "--where", f"{column} > 1 N", file=compressor
+    )
     told = [[row.get(f"{column}_N") for row in found] for found in (alone, both)]
     assert told[0] == sorted(told[1])
     assert not any("high pressure" in head for row in alone for head in row)
@@ -111,7 +149,7 @@ def test_a_key_value_is_asked_of_one_cylinder_as_it_is_called_in_the_head() -> N
 def test_a_summary_tells_quantiles_and_ranks() -> None:
     asked = ("--vary", "rod_ratio=uniform(3, 6)", "--sample", "60", "--columns", "b_max,work")
     whole = rows(*asked)
-    told = {one["column"]: one for one in rows(*asked, "--summary")}
+    told = {row["column"]: row for row in rows(*asked, "--summary")}
     values = np.array([one["b_max_m/s^2"] for one in whole])
     assert told["b_max"]["q50"] == pytest.approx(np.median(values), rel=1e-13)
     assert (told["b_max"]["q0"], told["b_max"]["q100"]) == (values.min(), values.max())
@@ -172,7 +210,10 @@ def test_an_interrupt_leaves_whole_rows_and_the_old_file(jobs: str, tmp_path: Pa
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     stderr = process.communicate(timeout=60)[1]
     lines = part(file).read_text().splitlines(keepends=True)
-    assert stderr.rstrip() == f"{part(file)} holds {len(lines) - 1} rows; run again with --resume to continue"
+    assert (
+        stderr.rstrip()
+        == f"{part(file)} holds {len(lines) - 1} rows; run again with --resume to continue"
+    )
     assert (process.returncode, file.read_text()) == (130, "old")
     assert all(line.count(",") == 3 and line.endswith("\n") for line in lines)
 
@@ -180,7 +221,9 @@ def test_an_interrupt_leaves_whole_rows_and_the_old_file(jobs: str, tmp_path: Pa
 @pytest.mark.slow
 @pytest.mark.parametrize("end", [signal.SIGTERM, signal.SIGKILL])
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])
-def test_who_is_killed_leaves_no_process_and_the_old_file(end: int, suffix: str, tmp_path: Path) -> None:
+def test_who_is_killed_leaves_no_process_and_the_old_file(
+    end: int, suffix: str, tmp_path: Path
+) -> None:
     """Emptied at the start: a killed sweep left 4 bytes of Parquet in place of a whole file."""
     if suffix == "parquet":
         pytest.importorskip("pyarrow")
@@ -188,7 +231,9 @@ def test_who_is_killed_leaves_no_process_and_the_old_file(end: int, suffix: str,
     file.write_text("old")
     process = in_the_midst(file, "2")
     os.kill(process.pid, end)
-    stderr = process.communicate(timeout=60)[1]  # comes to the end of what each of them may write to when none is left
+    stderr = process.communicate(timeout=60)[
+        1
+    ]  # comes to the end of what each of them may write to when none is left
     assert stderr == ""
     assert file.read_text() == "old"
     if suffix == "csv":
@@ -220,7 +265,16 @@ def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
     """The type of a column was that of its first 10,000 rows; a sweep without a row left no file."""
     parquet = pytest.importorskip("pyarrow.parquet")
     file = str(tmp_path / "rows.parquet")
-    asked = ("--vary", "rod_ratio=0.2:1.3:0.00005", "--columns", "stroke,phi_b_zero", "-o", file, "--jobs", "1")
+    asked = (
+        "--vary",
+        "rod_ratio=0.2:1.3:0.00005",
+        "--columns",
+        "stroke,phi_b_zero",
+        "-o",
+        file,
+        "--jobs",
+        "1",
+    )
     assert run(*asked).exit_code == 0
     strokes = parquet.read_table(file)["stroke_m"].to_pylist()
     assert (strokes.count(None), strokes[-1]) == (16001, pytest.approx(0.8))

@@ -21,7 +21,10 @@ WATERWORKS = CONFIGS["waterworks"]
 
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
     known = every_quantity().key_values(command)
-    asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
+    asked = [
+        Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine")
+        for id in ids
+    ]
     inputs = given_uncertainty(kurbel.load(WATERWORKS), [*spreads.items()])
     assert inputs
     found = uncertainties(inputs, asked)
@@ -36,7 +39,9 @@ def test_first_order_is_that_of_closed_formulas() -> None:
     by_speed, by_ratio = 2 * 0.01, 0.2 / 1.2 * 0.02
     size = np.hypot(by_speed, by_ratio)
     assert found["b_max"].spread == pytest.approx(size * found["b_max"].value, rel=1e-8)
-    assert found["b_max"].shares == pytest.approx(((by_speed / size) ** 2, (by_ratio / size) ** 2), rel=1e-7)
+    assert found["b_max"].shares == pytest.approx(
+        ((by_speed / size) ** 2, (by_ratio / size) ** 2), rel=1e-7
+    )
     assert found["A_head"].spread <= 1e-15
     assert all(one.sample == 0 for one in found.values())
 
@@ -45,7 +50,9 @@ def test_a_point_of_a_card_may_be_off() -> None:
     """A_i = s (A_H + A_C) ∮ p df: the line between f = 0.35 and 0.7 is drawn over its point at 0.5 on both sides."""
     found = of({"indicator.head_end.expansion.2.1": "0.1"}, "work", "A_head", "A_crank")
     areas = found["A_head"].value + found["A_crank"].value
-    assert found["work"].spread == pytest.approx(0.1 * 98066.5 * (0.7 - 0.35) / 2 * 0.8 * areas, rel=1e-8)
+    assert found["work"].spread == pytest.approx(
+        0.1 * 98066.5 * (0.7 - 0.35) / 2 * 0.8 * areas, rel=1e-8
+    )
 
 
 def test_drawn_machines_that_fail_are_told_of() -> None:
@@ -67,10 +74,15 @@ def test_what_bends_is_told_by_a_sample() -> None:
 
 
 def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> None:
-    text = (WATERWORKS.read_text(encoding="utf-8")) + 'uncertainty: {speed: "± 1 %", bore: ± 0.2 mm}\n'
+    text = (
+        WATERWORKS.read_text(encoding="utf-8")
+    ) + 'uncertainty: {speed: "± 1 %", bore: ± 0.2 mm}\n'
     file = tmp_path / "m.yaml"
     file.write_text(text, encoding="utf-8")
-    for name, id, part in (("forces", "T_max", "cylinders"), ("flywheel", "dE", "machine_place_tables")):
+    for name, id, part in (
+        ("forces", "T_max", "cylinders"),
+        ("flywheel", "dE", "machine_place_tables"),
+    ):
         result = run(name, file, "--key-values", "-f", "json")
         assert result.exit_code == 0, result.output
         told = json.loads(result.stdout)
@@ -92,7 +104,9 @@ def test_differences_are_as_good_as_exact_derivatives(share: float) -> None:
             return mp.diff(lambda p: mp.cos(p) + mp.sqrt(length**2 - mp.sin(p) ** 2), phi)
 
         place = mp.findroot(lambda phi: mp.diff(lambda p: slope(ratio, p), phi), mp.radians(79))
-        by_ratio = mp.diff(lambda length: slope(length, place), ratio)  # where x′ is largest its place does not count
+        by_ratio = mp.diff(
+            lambda length: slope(length, place), ratio
+        )  # where x′ is largest its place does not count
         exact = float(abs(by_ratio / slope(ratio, place)) * ratio * mp.mpf(share))
     (one,) = of({"rod_ratio": f"{100 * share!r} %"}, "c_max").values()
     assert one.sample == 0

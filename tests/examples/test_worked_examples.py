@@ -29,7 +29,9 @@ def test_it_answers(file: str) -> None:
 def check(row: dict[str, Any]) -> None:
     answered = told(row)
     if "back" in row:
-        assert str(row.get("strict", row["exact"])) in (FOLDER / f"{row['file']}.yaml").read_text(encoding="utf-8")
+        assert str(row.get("strict", row["exact"])) in (FOLDER / f"{row['file']}.yaml").read_text(
+            encoding="utf-8"
+        )
         assert answered == pytest.approx(row["back"], rel=1e-11, abs=1e-7), row["of"]
         return
     answered = answered if isinstance(answered, list) else [answered]

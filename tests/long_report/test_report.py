@@ -38,12 +38,16 @@ def tiles(page: str) -> list[tuple[str, str]]:
     assert facts
     return [
         (unescape(name), unescape(number))
-        for name, number in re.findall(r"<p><small>([^<]*)</small><br><b>([^<]*)</b>", facts.group(1))
+        for name, number in re.findall(
+            r"<p><small>([^<]*)</small><br><b>([^<]*)</b>", facts.group(1)
+        )
     ]
 
 
 def number_of(text: str) -> float:
-    return float(unescape(text).replace("−", "-").replace("\N{NARROW NO-BREAK SPACE}", "").removesuffix("°"))
+    return float(
+        unescape(text).replace("−", "-").replace("\N{NARROW NO-BREAK SPACE}", "").removesuffix("°")
+    )
 
 
 def test_the_waterworks_machine_is_whole_and_small() -> None:
@@ -77,21 +81,30 @@ def test_the_first_page_says_most(name: str) -> None:
     rest = page[page.index("</section>") :]
     facts = [number for _, number in tiles(page)]
     assert len(facts) == 8
-    assert sum(f">{one}" in unescape(rest) or one.split(".")[0] in unescape(rest) for one in facts) == 8
+    assert (
+        sum(f">{fact}" in unescape(rest) or fact.split(".")[0] in unescape(rest) for fact in facts)
+        == 8
+    )
 
 
 def test_the_torque_of_a_driven_machine_is_its_largest_in_size() -> None:
     """A compressor is driven: its largest torque is against the rotation, and its smallest magnitude near zero."""
-    title, number = next(one for one in tiles(page_of("compressor-two-stage")) if one[0] == "Largest torque")
+    title, number = next(
+        tile for tile in tiles(page_of("compressor-two-stage")) if tile[0] == "Largest torque"
+    )
     torques = case_of("compressor-two-stage").flywheel.at(np.arange(0.0, 360.0, 0.05)).M
-    assert number_of(number) * 1e3 == pytest.approx(torques[np.argmax(np.abs(torques))], rel=1e-3), title
+    assert number_of(number) * 1e3 == pytest.approx(
+        torques[np.argmax(np.abs(torques))], rel=1e-3
+    ), title
 
 
 def test_the_fluctuating_volume_is_that_of_the_whole_pump() -> None:
     """Three single-acting cranks at 120 deg at L/R = 5 have 0.029388 A s, one alone 0.553084 (docs/delivery.md)."""
     number = dict(tiles(page_of("triplex-pump")))["Fluctuating volume"]
     bore, stroke, slip = 8.0, 16.0, 0.04  # cm, cm
-    assert number_of(number) == pytest.approx(0.029388 * np.pi / 4 * bore**2 * stroke * (1 - slip), rel=1e-3)
+    assert number_of(number) == pytest.approx(
+        0.029388 * np.pi / 4 * bore**2 * stroke * (1 - slip), rel=1e-3
+    )
 
 
 FIRST = {
@@ -120,8 +133,12 @@ def test_what_a_machine_is_stands_below_its_name() -> None:
     """As configs/marine-diesel.yaml has it: L/R = 4.4, so that the rod has 1980 mm."""
     machine = "6 cylinders, two-stroke, 110 rpm, stroke 900 mm, rod 1980 mm, bore 540 mm"
     assert machine in text_in(page_of("marine-diesel"))
-    assert "Shaper 40 rpm, stroke 975 mm" in " ".join(text_in(page_of("shaper")).split())  # a ram, and no cylinder
-    named = re.findall(r"<(title|h\d|caption|figcaption)>(?:<b>)?Motor ship", page_of("marine-diesel"))
+    assert "Shaper 40 rpm, stroke 975 mm" in " ".join(
+        text_in(page_of("shaper")).split()
+    )  # a ram, and no cylinder
+    named = re.findall(
+        r"<(title|h\d|caption|figcaption)>(?:<b>)?Motor ship", page_of("marine-diesel")
+    )
     assert named == ["title", "h1"]  # of the window, and of the page
 
 
@@ -130,13 +147,17 @@ def test_numbers_from_ten_thousand_have_thin_spaces() -> None:
     assert "36\N{NARROW NO-BREAK SPACE}000" in section(page_of("marine-diesel"), "flywheel")
     summary = section(page_of("waterworks-two-cranks"), "summary")
     assert "18\N{NARROW NO-BREAK SPACE}066.2 kg m²" in summary
-    assert not re.search(r"(?<![\d.])\d{5}", re.sub(r"<svg.*?</svg>", "", unescape(summary), flags=re.DOTALL))
+    assert not re.search(
+        r"(?<![\d.])\d{5}", re.sub(r"<svg.*?</svg>", "", unescape(summary), flags=re.DOTALL)
+    )
 
 
 def test_firing_intervals() -> None:
     """A two-stroke of six fires every 60°, in the order that the file gives."""
     page = page_of("marine-diesel")
-    rows = re.findall(r'<th scope="row">\D*(\d)</th><td class="r">(\d+)°</td><td class="r">(\d+)°</td>', page)
+    rows = re.findall(
+        r'<th scope="row">\D*(\d)</th><td class="r">(\d+)°</td><td class="r">(\d+)°</td>', page
+    )
     assert [tuple(map(int, row)) for row in rows] == [
         (number, 60 * place, 60) for place, number in enumerate((1, 5, 3, 4, 2, 6))
     ]
@@ -145,7 +166,9 @@ def test_firing_intervals() -> None:
 def test_equal_cylinders_and_bearings_are_there_once() -> None:
     """Both banks of the V8 have equal pistons; six equal cylinders have one picture of each kind."""
     page = page_of("marine-diesel")
-    assert page.count("Indicator diagram: cylinders 1–6.") == 2  # its heading, and for readers of screens
+    assert (
+        page.count("Indicator diagram: cylinders 1–6.") == 2
+    )  # its heading, and for readers of screens
     assert "Indicator diagram: cylinder 2" not in page
     forces = section(page_of("v8-cross-plane"), "forces")
     assert "left 1–4, right 1–4" in text_in(forces)
@@ -160,7 +183,10 @@ def test_load_cases_and_limits_are_on_the_first_page() -> None:
     rows = re.findall(r"([\d.]+)\s?(?:°|%)\s*≥ (15°|3 %)\s*PASS", summary)
     assert len(rows) == 4
     assert summary.count("PASS") == 4
-    both, one = (number_of(re.search(rf"{name}\s*([\d.]+)", summary).group(1)) for name in ("both ends", "unloaded"))
+    both, one = (
+        number_of(re.search(rf"{name}\s*([\d.]+)", summary).group(1))
+        for name in ("both ends", "unloaded")
+    )
     assert one == pytest.approx(both / 2, rel=0.02)
 
 
@@ -173,21 +199,34 @@ def test_the_energy_balance_closes_on_the_page() -> None:
     """What goes in less what friction takes reaches the shaft, in the printed figures."""
     rows = re.search(r'id="energy".*?<tbody>(.*?)</tbody>', page_of("waterworks"), re.DOTALL)
     assert rows
-    figures = [number_of(one) for one in re.findall(r'<td class="r">(−?[0-9.]+)</td>', rows.group(1))]
+    figures = [
+        number_of(one) for one in re.findall(r'<td class="r">(−?[0-9.]+)</td>', rows.group(1))
+    ]
     *terms, shaft = figures
     assert sum(terms) == pytest.approx(shaft, rel=1e-3)
     assert "below 1e-14" in rows.group(1) or re.search(r"e-1[0-9]", rows.group(1))
 
 
-PAGES = [("gas-engine",), ("waterworks",), ("waterworks", "compressor"), ("shaper", "scotch-yoke-pump")]
+PAGES = [
+    ("gas-engine",),
+    ("waterworks",),
+    ("waterworks", "compressor"),
+    ("shaper", "scotch-yoke-pump"),
+]
 
 
-@pytest.mark.parametrize("names", few([(one,) for one in PAGES], [(PAGES[1],), (PAGES[3],)], map("-".join, PAGES)))
+@pytest.mark.parametrize(
+    "names", few([(one,) for one in PAGES], [(PAGES[1],), (PAGES[3],)], map("-".join, PAGES))
+)
 def test_nothing_comes_from_elsewhere_and_nothing_runs(names: tuple[str, ...]) -> None:
     page = page_of(*names)
     assert "default-src 'none'" in page
-    assert not re.findall(r"<script|<link|<img|<iframe|\bsrc=|url\(|@import|\son\w+=|javascript:", page)
-    assert set(re.findall(r'href="([^"]*)"', page)) <= {f"#{id}" for id in re.findall(r'id="([^"]*)"', page)}
+    assert not re.findall(
+        r"<script|<link|<img|<iframe|\bsrc=|url\(|@import|\son\w+=|javascript:", page
+    )
+    assert set(re.findall(r'href="([^"]*)"', page)) <= {
+        f"#{id}" for id in re.findall(r'id="([^"]*)"', page)
+    }
 
 
 @pytest.mark.parametrize("name", few(["gas-engine", "waterworks"], ["waterworks"]))
@@ -222,7 +261,9 @@ def test_limits_and_expectations_have_a_verdict() -> None:
     page = page_of_case(Case(loads(text + 'expect: {stroke: "800 mm ± 1 %"}}')))
     said = text_in(page)
     # R Zusammenstellung 112, of which c_max is 2.136 m/s
-    assert re.search(r"2\.1359 m/s\s*≤ 2 m/s\s*FAIL\s*Largest velocity on the outstroke\s*cylinder 1", said)
+    assert re.search(
+        r"2\.1359 m/s\s*≤ 2 m/s\s*FAIL\s*Largest velocity on the outstroke\s*cylinder 1", said
+    )
     assert "PASS" in said
     assert "800 mm ± 1 %" in said
     assert page.count('<tr class="bad">') == 1
@@ -241,7 +282,10 @@ def test_what_is_missing_is_said_and_why() -> None:
 
 
 def test_the_input_is_told_as_it_was_read() -> None:
-    machine = loads("{stroke: 800 mm, rod_ratio: 5, bore: 1 in}", overrides=("bore=450 mm", "masses.piston=1 kg"))
+    machine = loads(
+        "{stroke: 800 mm, rod_ratio: 5, bore: 1 in}",
+        overrides=("bore=450 mm", "masses.piston=1 kg"),
+    )
     assert machine.origin
     assert dict(given(machine.origin)) == {
         "stroke": "800 mm",
@@ -262,7 +306,9 @@ def test_differences_are_in_percent(tmp_path: Path) -> None:
     said = text_in(out.read_text(encoding="utf-8"))
     assert "+12.50 %" in said  # 900/800
     assert re.search(r"stroke\s*800 mm\s*900 mm", said)
-    rows = re.findall(r'<th scope="row">c<sub>m</sub></th>(.*?)</tr>', out.read_text(encoding="utf-8"))
+    rows = re.findall(
+        r'<th scope="row">c<sub>m</sub></th>(.*?)</tr>', out.read_text(encoding="utf-8")
+    )
     assert "+12.50 %" in rows[0]
     one.write_text("{name: A, stroke: 800 mm, rod_ratio: 5}")
     same = run("report", str(one), str(one))
@@ -272,4 +318,8 @@ def test_differences_are_in_percent(tmp_path: Path) -> None:
     page = run("report", str(one), str(other)).stdout
     assert f"A (A) is that of {one}; A (B) is that of {other}." in text_in(page)
     # the heading, and what a reader of screens is told
-    assert text_in(page).count("A (A). Displacement") == text_in(page).count("A (B). Displacement") == 2
+    assert (
+        text_in(page).count("A (A). Displacement")
+        == text_in(page).count("A (B). Displacement")
+        == 2
+    )

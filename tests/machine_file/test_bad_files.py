@@ -22,7 +22,9 @@ def _message(name: str, monkeypatch: pytest.MonkeyPatch) -> str:
 
 def test_messages(monkeypatch: pytest.MonkeyPatch, kept: Callable[[Path, str], str]) -> None:
     told = {name: _message(name, monkeypatch) + "\n" for name in FILES}
-    assert told == {name: kept(FOLDER / f"{name}.expected", message) for name, message in told.items()}
+    assert told == {
+        name: kept(FOLDER / f"{name}.expected", message) for name, message in told.items()
+    }
 
 
 def test_pretty_shows_the_source_line_and_a_caret(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -35,7 +37,11 @@ def test_pretty_shows_the_source_line_and_a_caret(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize("cells", [30, 60, 104])
 def test_the_caret_is_below_the_fault_in_a_line_that_is_cut(cells: int) -> None:
     pairs = ", ".join(f"[{i}, 1]" for i in range(360))
-    for text in (f"effort: {{unit: N m, points: [{pairs}, [360, x]]}}", "{cylinders: x}", f"cylinders: x  # {pairs}"):
+    for text in (
+        f"effort: {{unit: N m, points: [{pairs}, [360, x]]}}",
+        "{cylinders: x}",
+        f"cylinders: x  # {pairs}",
+    ):
         with pytest.raises(MachineFileError) as caught:
             loads(text)
         _, source, caret = caught.value.pretty(cells).split("\n")
@@ -60,7 +66,9 @@ def test_nothing_that_was_built_gets_one() -> None:
     engine = ENGINE + "bore: 450 mm\nflywheel: {fluctuation: 1/5}\n" + STEAM
     assert "is it right?" not in run("check", "-", text=engine).output
     pump = "indicator: {head_end: {constant: {expansion: 0 bar, compression: 1600 bar}}}\n"
-    assert "is its unit right?" not in run("check", "-", text=ENGINE + "bore: 20 mm\n" + pump).output
+    assert (
+        "is its unit right?" not in run("check", "-", text=ENGINE + "bore: 20 mm\n" + pump).output
+    )
 
 
 LONG = 100_000
@@ -94,8 +102,12 @@ SECRET = "root:x:0:0:root:/root:/bin/bash\n"
 
 
 @pytest.mark.parametrize("delimiter", ["comma", "space", "tab"])
-@pytest.mark.parametrize("content", [SECRET, f"0,{SECRET}", f"0 1\n{SECRET}", "-----BEGIN KEY-----\nMIIEpAIBAAKC\n"])
-def test_no_text_of_a_file_is_quoted_that_is_no_trace(tmp_path: Path, delimiter: str, content: str) -> None:
+@pytest.mark.parametrize(
+    "content", [SECRET, f"0,{SECRET}", f"0 1\n{SECRET}", "-----BEGIN KEY-----\nMIIEpAIBAAKC\n"]
+)
+def test_no_text_of_a_file_is_quoted_that_is_no_trace(
+    tmp_path: Path, delimiter: str, content: str
+) -> None:
     (tmp_path / "passwd").write_text(content)
     keys = TRACE.format(file="passwd", zero="0 deg", more=f", delimiter: {delimiter}")
     (tmp_path / "m.yaml").write_text(ENGINE + keys)

@@ -19,9 +19,24 @@ SIGNS = '&a *a !!str !x <<: ? - : , { } [ ] | > % @ ` # --- ... " \t \x00 \x85 \
 SNIPPETS = [
     *VALUES.split(" "),
     *SIGNS.split(" "),
-    *["0 mm", "1e308 km", "-1e308 km", "1e-320 mm", "1 kg", "5 at", "[[0, 1]]", "[[0, 1e308], [1, 2]]", "[0,5, 1,5]"],
+    *[
+        "0 mm",
+        "1e308 km",
+        "-1e308 km",
+        "1e-320 mm",
+        "1 kg",
+        "5 at",
+        "[[0, 1]]",
+        "[[0, 1e308], [1, 2]]",
+        "[0,5, 1,5]",
+    ],
     *["\ncrank: 1 m\n", "\n  bore: 1 mm\n", "\ncylinders:\n  - {}\n", "\nmechanism: four-bar\n"],
-    *["\ncycle: four-stroke\n", "\nmechanism: slotted-lever\n", "\nload: {slip: 1e-320}\n", "\noffset: 1e300 m\n"],
+    *[
+        "\ncycle: four-stroke\n",
+        "\nmechanism: slotted-lever\n",
+        "\nload: {slip: 1e-320}\n",
+        "\noffset: 1e300 m\n",
+    ],
     "\nmasses: {piston: [1e308 kg, 1e308 kg]}\n",
 ]
 
@@ -91,20 +106,47 @@ def test_other_values_for_keys(data: st.DataObject) -> None:
 
 
 NUMBERS = st.one_of(
-    st.floats(allow_nan=False, allow_infinity=False), st.sampled_from([0.0, 5e-324, 1e-300, 1e150, 1e308])
+    st.floats(allow_nan=False, allow_infinity=False),
+    st.sampled_from([0.0, 5e-324, 1e-300, 1e150, 1e308]),
 )
 
 
 @SETTINGS
-@given(NUMBERS, NUMBERS, NUMBERS, st.sampled_from(["rod", "rod_ratio"]), st.sampled_from(["crank", "stroke"]))
-def test_extreme_lengths(crank: float, rod: float, offset: float, rod_key: str, crank_key: str) -> None:
+@given(
+    NUMBERS,
+    NUMBERS,
+    NUMBERS,
+    st.sampled_from(["rod", "rod_ratio"]),
+    st.sampled_from(["crank", "stroke"]),
+)
+def test_extreme_lengths(
+    crank: float, rod: float, offset: float, rod_key: str, crank_key: str
+) -> None:
     unit = " m" if rod_key == "rod" else ""
     read(f"{crank_key}: {crank!r} m\n{rod_key}: {rod!r}{unit}\noffset: {offset!r} m\n".encode())
 
 
 @pytest.mark.parametrize("size", [100_000])
 @pytest.mark.parametrize(
-    "sign", ["[", "{", "- ", "? ", "a: ", "'", '"', "&a ", "*a ", "!", "a:\n", "[],", "#", "%", "\t", "|\n"]
+    "sign",
+    [
+        "[",
+        "{",
+        "- ",
+        "? ",
+        "a: ",
+        "'",
+        '"',
+        "&a ",
+        "*a ",
+        "!",
+        "a:\n",
+        "[],",
+        "#",
+        "%",
+        "\t",
+        "|\n",
+    ],
 )
 def test_no_sign_repeated_is_a_fault_of_kurbel(sign: str, size: int) -> None:
     read((sign * (size // len(sign))).encode())

@@ -35,7 +35,13 @@ def test_several_cylinders_with_everything() -> None:
     assert (masses.parts, masses.at_crosshead(math.inf)) == (717, 717 + 110)
     assert friction.rings.count == 3
     steam = high.pistons[0].indicator.head_end
-    assert (steam.admission, steam.exhaust, steam.cut_off, steam.release, steam.exponent) == (8e5, 0.2e5, 0.3, 1, 1)
+    assert (steam.admission, steam.exhaust, steam.cut_off, steam.release, steam.exponent) == (
+        8e5,
+        0.2e5,
+        0.3,
+        1,
+        1,
+    )
     assert machine.limits == (("c_max", 6.0), ("delta", 1 / 200))
     wheel, coupling = machine.flywheel, machine.coupling
     # GD² of 40000 kgf m² is 4J with J in kg m²
@@ -71,11 +77,16 @@ def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
 def test_rules_of_parts_are_told_although_another_part_is_wrong() -> None:
     with pytest.raises(MachineFileError) as caught:
         loads("crank: 400 mm\nrod: 300 mm\nbore: 90 mm\nhead_end_rod: 95 mm\nflywheel: {}\n")
-    assert [fault.path for fault in caught.value.faults] == [("rod",), ("head_end_rod",), ("flywheel",)]
+    assert [fault.path for fault in caught.value.faults] == [
+        ("rod",),
+        ("head_end_rod",),
+        ("flywheel",),
+    ]
 
 
 @pytest.mark.parametrize(
-    ("text", "value"), [("1/80", 1 / 80), ("1.25 %", 0.0125), (" 1 / 80 ", 1 / 80), ("1⁄80", 1 / 80)]
+    ("text", "value"),
+    [("1/80", 1 / 80), ("1.25 %", 0.0125), (" 1 / 80 ", 1 / 80), ("1⁄80", 1 / 80)],
 )
 def test_a_ratio_is_written_as_people_do(text: str, value: float) -> None:
     machine = loads(
@@ -93,7 +104,9 @@ def test_a_ratio_is_written_as_people_do(text: str, value: float) -> None:
 def test_a_value_of_any_depth_is_set() -> None:
     card = "indicator.head_end.expansion.1=[0.3, 9.5]"
     machine = loads(
-        DEMO, "m", ["speed=9 rpm", "speed=60 rpm", "flywheel.fluctuation=1/80", card, "masses={piston: 9 kg}"]
+        DEMO,
+        "m",
+        ["speed=9 rpm", "speed=60 rpm", "flywheel.fluctuation=1/80", card, "masses={piston: 9 kg}"],
     )
     (cylinder,) = machine.cylinders
     assert machine.speed == 1  # the last one holds
@@ -104,15 +117,24 @@ def test_a_value_of_any_depth_is_set() -> None:
 
 def test_what_is_like_the_changed_one_changes_with_it() -> None:
     for key in ("cylinders.0.crank", "cylinders[0].crank"):
-        assert [one.mechanism.crank for one in loads(ALL["like_one"], "m", [f"{key}=150 mm"]).cylinders] == [0.15, 0.15]
+        assert [
+            cylinder.mechanism.crank
+            for cylinder in loads(ALL["like_one"], "m", [f"{key}=150 mm"]).cylinders
+        ] == [0.15, 0.15]
     changed = ["cylinders.count=2", "cylinders.firing_order=1-2", "cylinders.each.bore=1 m"]
-    found = [(one.pistons[0].bore, one.crank_position) for one in loads(ALL["equal_cylinders"], "m", changed).cylinders]
+    found = [
+        (cylinder.pistons[0].bore, cylinder.crank_position)
+        for cylinder in loads(ALL["equal_cylinders"], "m", changed).cylinders
+    ]
     assert found == [(1, 0), (1, 360)]
 
 
 @pytest.mark.parametrize(
     ("override", "message"),
-    [(f"{'9' * 5000}=3", "99…: unknown key; valid keys here are kurbel, name, speed"), ("name=a\udcff", "is no UTF-8")],
+    [
+        (f"{'9' * 5000}=3", "99…: unknown key; valid keys here are kurbel, name, speed"),
+        ("name=a\udcff", "is no UTF-8"),
+    ],
 )
 def test_a_fault_names_the_override(override: str, message: str) -> None:
     with pytest.raises(KurbelError, match=re.escape(message)) as caught:

@@ -14,7 +14,7 @@ from good_machines import ALL
 from kurbel.declared.forms.structures import RecordForm, records
 from kurbel.declared.keys import Key
 from kurbel.declared.unit_systems import SI
-from kurbel.declared.units import ZEROED_UNITS, example, parse_quantity, unit_names
+from kurbel.declared.units import ZEROED_UNITS, kind_example, parse_quantity, unit_names
 from kurbel.errors import RuleError, UnitError
 from kurbel.machine_file.reader import ROOT
 from kurbel.machine_file.schema import describe, json_schema
@@ -44,14 +44,25 @@ SLIDER = {"crank": "400 mm", "rod": "2 m"}
     "machine",
     [
         *({**SLIDER, "crank": wrong} for wrong in (400, "400 kg", "0,4 m")),
-        *({**SLIDER, **more} for more in ({"colour": "green"}, {"rocker": "1 m"}, {"efficiency": 85})),
         *(
             {**SLIDER, **more}
-            for more in ({"cycle": "six-stroke"}, {"head_end_rod": "20 mm"}, {"limits": {"cmax": "6 m/s"}})
+            for more in ({"colour": "green"}, {"rocker": "1 m"}, {"efficiency": 85})
+        ),
+        *(
+            {**SLIDER, **more}
+            for more in (
+                {"cycle": "six-stroke"},
+                {"head_end_rod": "20 mm"},
+                {"limits": {"cmax": "6 m/s"}},
+            )
         ),
         {**SLIDER, "flywheel": {"inertia": "1 kg m2", "gd2": "4 kg m2"}},
         *({"crank": "400 mm", "rod_ratio": wrong} for wrong in ("5:1", "10/")),
-        *({"mechanism": "four-bar", "crank": "400 mm"}, {"mechanism": "gearwheel"}, {"cylinders": []}),
+        *(
+            {"mechanism": "four-bar", "crank": "400 mm"},
+            {"mechanism": "gearwheel"},
+            {"cylinders": []},
+        ),
         {"bore": "400 mm", "cylinders": [SLIDER]},
         {"cylinders": {"count": 4}},
         {"cylinders": [{"like": "A", "boore": "5 m"}]},
@@ -73,7 +84,7 @@ def test_patterns_know_every_unit(kind: str) -> None:
         for spelt in (unit, *powers, unit.replace(" ", "·"), re.sub("(?=Hg|H2O)", " ", unit)):
             assert re.search(pattern, f"1.5e3 {spelt}"), spelt
             assert unit in ZEROED_UNITS or parse_quantity(f"1.5e3 {spelt}", kind) > 0
-    assert re.search(pattern, example(kind))
+    assert re.search(pattern, kind_example(kind))
     for text in ("1.5", "1,5 mm", "010 mm", "mm", "5", "1_0 mm"):
         assert not re.search(pattern, text)
         with pytest.raises(UnitError):
@@ -84,7 +95,12 @@ def test_figures_may_be_named_by_their_symbols(validator: Any) -> None:
     machine = {"crank": "400 mm", "rod": "2 m"}
     good = {"b_max": "13.16 m/s2 ± 0.5 %", "φ_o": ["179 deg", "181 deg"], "dA/A": "0 +- 1e-9"}
     assert validator.is_valid(machine | {"limits": {"A_H": "1 m2", "ΔA/A": 1e-9}, "expect": good})
-    for bad in ({"b_max": "13.16 m/s2"}, {"bmax": "1 m/s2 ± 1 %"}, {"φ_b=0": "1 deg ± 1 deg"}, {"b_max": ["1 m/s2"]}):
+    for bad in (
+        {"b_max": "13.16 m/s2"},
+        {"bmax": "1 m/s2 ± 1 %"},
+        {"φ_b=0": "1 deg ± 1 deg"},
+        {"b_max": ["1 m/s2"]},
+    ):
         assert not validator.is_valid(machine | {"expect": bad})
 
 
@@ -106,7 +122,12 @@ def all_records() -> Iterator[RecordForm]:
 
 
 def declared(field: str) -> list[Any]:
-    return [(record, name, key) for record in all_records() for name, key in record.keys.items() if getattr(key, field)]
+    return [
+        (record, name, key)
+        for record in all_records()
+        for name, key in record.keys.items()
+        if getattr(key, field)
+    ]
 
 
 def allowed_by_schema(record: RecordForm, *names: str) -> bool:
@@ -122,7 +143,9 @@ def rules_of(record: RecordForm) -> jsonschema.Draft7Validator:
 
 
 @law_of_each(declared("instead"))
-def test_two_keys_that_say_the_same_thing_are_a_contradiction(record: RecordForm, name: str, key: Key) -> None:
+def test_two_keys_that_say_the_same_thing_are_a_contradiction(
+    record: RecordForm, name: str, key: Key
+) -> None:
     with pytest.raises(RuleError, match=f"{name}: '{key.instead}' and '{name}' mean the same"):
         record.record.from_keys(**{name: 1.5, key.instead: 1.5})
     assert not allowed_by_schema(record, name, key.instead)
@@ -145,6 +168,8 @@ def test_a_key_needs_the_one_beside_it(record: RecordForm, name: str, key: Key) 
         ([0], [1], "rise over one whole cycle"),
     ],
 )
-def test_a_trace_is_one_cycle_at_birth(angles: list[float], pressures: list[float], message: str) -> None:
+def test_a_trace_is_one_cycle_at_birth(
+    angles: list[float], pressures: list[float], message: str
+) -> None:
     with pytest.raises(RuleError, match=message):
         Trace(np.array(angles, dtype=float), np.array([pressures], dtype=float))

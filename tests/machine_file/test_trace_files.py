@@ -23,7 +23,11 @@ PRESSURES = np.round(absolute(ENGINE, ANGLES), 3)
 
 
 def machine(
-    folder: Path, content: str | bytes, keys: str = "", unit: str = "bar", cycle: str = "four-stroke"
+    folder: Path,
+    content: str | bytes,
+    keys: str = "",
+    unit: str = "bar",
+    cycle: str = "four-stroke",
 ) -> Machine:
     (folder / "p.csv").write_bytes(content if isinstance(content, bytes) else content.encode())
     (folder / "m.yaml").write_text(
@@ -49,8 +53,12 @@ def meant(one: Machine) -> None:
     assert trace.pressures[:-1][order] / 1e5 == pytest.approx(PRESSURES, rel=1e-12)
 
 
-def rows(angles: Any = ANGLES, pressures: Any = PRESSURES, between: str = ",", form: str = "%s") -> str:
-    return "".join(f"{form % f'{a:.10g}'}{between}{form % f'{p:.6g}'}\n" for a, p in zip(angles, pressures))
+def rows(
+    angles: Any = ANGLES, pressures: Any = PRESSURES, between: str = ",", form: str = "%s"
+) -> str:
+    return "".join(
+        f"{form % f'{a:.10g}'}{between}{form % f'{p:.6g}'}\n" for a, p in zip(angles, pressures)
+    )
 
 
 def commas(text: str) -> str:
@@ -66,7 +74,10 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
     "UTF-16, big end first": (b"\xfe\xff" + rows().encode("utf-16-be"), ""),
     "byte order mark": ("\ufeff" + rows(), ""),
     "decimal commas": (commas(rows(between=";")), ", delimiter: semicolon, decimal: comma"),
-    "quoted decimal commas": (rows(form='"%s"').replace(".", ",").replace('""', '"'), ", decimal: comma"),
+    "quoted decimal commas": (
+        rows(form='"%s"').replace(".", ",").replace('""', '"'),
+        ", decimal: comma",
+    ),
     "quoted numbers": (rows(form='"%s"'), ""),
     "modulo 360": (rows(TURN), ""),
     "-360 to 360": (rows(np.roll((ANGLES + 360) % 720 - 360, 180), np.roll(PRESSURES, 180)), ""),
@@ -77,7 +88,10 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
     "no angles": (BARE, ", angle_step: 2 deg, pressure_column: 1"),
     "volts": (rows(pressures=(PRESSURES - 1) / 20), ", scale: 20, offset: 1 bar"),
     "kilopascals": (rows(pressures=PRESSURES * 100), ", scale: 0.01"),
-    "against the rotation": (rows((-ANGLES[::-1]) % 720, PRESSURES[::-1]), ", angle_sense: against"),
+    "against the rotation": (
+        rows((-ANGLES[::-1]) % 720, PRESSURES[::-1]),
+        ", angle_sense: against",
+    ),
     "falling angles": (rows(720 - ANGLES), ", angle_sense: against"),
     "line feeds of old Macs": (rows().replace("\n", "\r"), ""),
     "line feeds of DOS": (rows().replace("\n", "\r\n"), ""),
@@ -85,10 +99,16 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
     "blanks": (rows(between="   "), ", delimiter: space"),
     "semicolons by their sign": (rows(between=";"), ', delimiter: ";"'),
     "other columns": (rows(form="9,%s"), ", angle_column: 2, pressure_column: 4"),
-    "a heading in Latin-1": ("Kurbelwinkel [°]\n".encode("latin-1") + rows().encode(), ", skip_rows: 1"),
+    "a heading in Latin-1": (
+        "Kurbelwinkel [°]\n".encode("latin-1") + rows().encode(),
+        ", skip_rows: 1",
+    ),
     "a heading of figures": ("1500,12.5\n" + rows(), ", skip_rows: 1"),
     "comments and empty lines": ("# bar\n\n" + rows().replace("\n20,", "\n\n20,") + "# end\n", ""),
-    "samples given twice": (rows().replace("\n20,", "\n18,36.789\n20,").replace("36.789", f"{PRESSURES[9]:.6g}"), ""),
+    "samples given twice": (
+        rows().replace("\n20,", "\n18,36.789\n20,").replace("36.789", f"{PRESSURES[9]:.6g}"),
+        "",
+    ),
 }
 
 
@@ -102,7 +122,9 @@ def test_turns_that_begin_within_one(tmp_path: Path, begin: float, zero: str) ->
     """Angles modulo 360 that do not begin at the firing dead centre."""
     turned = np.roll(np.arange(360), int(-begin / 2))
     angles = (ANGLES[turned] - begin) % 360 + begin if begin < 0 else TURN[turned]
-    trace = trace_of(machine(tmp_path, rows(angles, PRESSURES[turned]), f", angle_zero: {zero} deg"))
+    trace = trace_of(
+        machine(tmp_path, rows(angles, PRESSURES[turned]), f", angle_zero: {zero} deg")
+    )
     assert np.sort(trace.pressures[:-1] / 1e5) == pytest.approx(np.sort(PRESSURES))
     peak = float(trace.angles[int(np.argmax(trace.pressures))])
     assert (peak - float(ANGLES[int(np.argmax(PRESSURES))])) % 360 == pytest.approx(0.0, abs=1e-9)
@@ -133,7 +155,11 @@ def test_the_advice_reads_the_file(tmp_path: Path, content: str | bytes, keys: s
 @pytest.mark.parametrize(
     ("content", "advice", "keys"),
     [
-        (rows(np.radians(ANGLES)), "are these radians? Then write 'angle_unit: rad'", ", angle_unit: rad"),
+        (
+            rows(np.radians(ANGLES)),
+            "are these radians? Then write 'angle_unit: rad'",
+            ", angle_unit: rad",
+        ),
         (
             rows(ANGLES / 9000),
             "are these times? Then write 'angle_unit: s'",
@@ -145,7 +171,11 @@ def test_the_advice_reads_the_file(tmp_path: Path, content: str | bytes, keys: s
             ", angle_step: 2 deg",
         ),
         (rows(720 - ANGLES), "the rows run backward; put", ", angle_sense: against"),
-        ("1500,12.5\n" + rows(), "line 2: the angle begins anew after 1500 deg; a turn has 360", ", skip_rows: 1"),
+        (
+            "1500,12.5\n" + rows(),
+            "line 2: the angle begins anew after 1500 deg; a turn has 360",
+            ", skip_rows: 1",
+        ),
     ],
 )
 def test_what_counts_no_degrees(tmp_path: Path, content: str, advice: str, keys: str) -> None:
@@ -162,7 +192,9 @@ def broken(line: int, text: str) -> str:
 
 
 def holed(begin: float, end: float, step: float, last: float = 360.0) -> str:
-    angles = [angle for angle in np.arange(0, last + step / 2, step).tolist() if not begin < angle < end]
+    angles = [
+        angle for angle in np.arange(0, last + step / 2, step).tolist() if not begin < angle < end
+    ]
     return rows(angles, [2 + (angle > 180) for angle in angles])
 
 
@@ -178,9 +210,17 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
     (broken(6, "50,x3"), "", "line 6: column 2 holds no number"),
     (broken(6, "50"), "", "line 6 has no column 2: 50"),
     (broken(6, "50;3"), "", "line 6 has no column 2: 50;3; leave such lines out"),
-    (broken(1, "angle,bar"), "", "line 1: column 1 holds no number; write 'skip_rows: 1' if it is a heading"),
+    (
+        broken(1, "angle,bar"),
+        "",
+        "line 1: column 1 holds no number; write 'skip_rows: 1' if it is a heading",
+    ),
     ("0;1,5\n180;2\n360;1\n", "", "line 1: '0;1' is no number; write 'delimiter: semicolon'"),
-    ("0;1,5\n180;2,5\n360;1,5\n", ", delimiter: semicolon", "line 1: '1,5' is no number; write 'decimal: comma'"),
+    (
+        "0;1,5\n180;2,5\n360;1,5\n",
+        ", delimiter: semicolon",
+        "line 1: '1,5' is no number; write 'decimal: comma'",
+    ),
     (
         "".join(f"{a};2\n" for a in range(720)) + "720;1,5\n",
         ", delimiter: semicolon",
@@ -190,7 +230,9 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
     ("# nothing\n\n", "", "p.csv has no figures"),
     *(
         (
-            broken.join(["# a form feed \x0c, and a separator \x1c \u2028", "0,1", "90,x", "360,1"]),
+            broken.join(
+                ["# a form feed \x0c, and a separator \x1c \u2028", "0,1", "90,x", "360,1"]
+            ),
             "",
             "line 3: column 2",
         )
@@ -204,19 +246,34 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
         f"is no number; {PLAIN}",
     ),
     (
-        "".join(f"{a:g};{p * 1000:,.2f}\n".translate(str.maketrans(".,", ",.")) for a, p in zip(ANGLES, PRESSURES)),
+        "".join(
+            f"{a:g};{p * 1000:,.2f}\n".translate(str.maketrans(".,", ",."))
+            for a, p in zip(ANGLES, PRESSURES)
+        ),
         ", delimiter: semicolon, decimal: comma",
         "line 1: '37.661,00' is no number",
     ),
     (rows(form="%s u"), "", f"line 1: column 1 holds no number; {PLAIN}"),
     (rows(form="%sD0"), "", f"line 1: column 1 holds no number; {PLAIN}"),
-    ("cycle: four-stroke\nspeed: 1500 rpm\n", "", "line 1 has no column 2; is it a file of figures?"),
+    (
+        "cycle: four-stroke\nspeed: 1500 rpm\n",
+        "",
+        "line 1 has no column 2; is it a file of figures?",
+    ),
     ("0,x\n", "", "line 1: column 2 holds no number; is it a file of figures?"),
-    ("0 1\n1\n", ", delimiter: space", "line 2 has no column 2: 1; leave such lines out, or correct them"),
+    (
+        "0 1\n1\n",
+        ", delimiter: space",
+        "line 2 has no column 2: 1; leave such lines out, or correct them",
+    ),
     (rows(), ", pressure_columns: 2-61", "line 1 has no column 61: 0,37.661; it has 2 only"),
     (BARE, "", "if it has no angles, write 'pressure_column: 1' and 'angle_step: 0.5 deg', say"),
     (rows() + "\nEnd\n", "", "line 362 has no column 2; leave such lines out, or correct them"),
-    (rows().replace("\n20,", "\n20,#"), "", "holds no number; leave such lines out, or correct them"),
+    (
+        rows().replace("\n20,", "\n20,#"),
+        "",
+        "holds no number; leave such lines out, or correct them",
+    ),
     (
         "".join(f"{a:g},{p:.2f}\n".replace(".", ",") for a, p in zip(ANGLES, PRESSURES)),
         "",
@@ -231,7 +288,11 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
     ),
     (b"TDSm\x0e\x00\x00\x00", "", "a TDMS file of LabVIEW, no text; export its table"),
     (b"\x1f\x8b\x08\x00", "", "compressed by gzip, no text; export its table"),
-    (b"0,1\n\x00\x01\x02 and so on, to the end of the head of the file, which has text", "", "has zero bytes"),
+    (
+        b"0,1\n\x00\x01\x02 and so on, to the end of the head of the file, which has text",
+        "",
+        "has zero bytes",
+    ),
     # what is no whole cycle, and in which line
     (broken(6, "20,3"), "", "line 6: 20 deg after 40 deg; put the points in order of the angle"),
     ("0,1\n", "", "line 1: a trace needs samples at two angles or more"),
@@ -251,16 +312,28 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
     *((holed(100, 126, step), "", "no samples from 100 to 126 deg") for step in (0.5, 2)),
     *((holed(10, 330, step), "", "no samples from 10 to 330 deg") for step in (0.5, 2)),
     (holed(100, 118, 1, last=343), "", "no samples from 343 to 360 deg"),
-    (rows(*(one[BUT_ONE] for one in FIVE_TIMES)), "", "line 1180: no samples from 2358 to 2420 deg"),
+    (
+        rows(*(five_time[BUT_ONE] for five_time in FIVE_TIMES)),
+        "",
+        "line 1180: no samples from 2358 to 2420 deg",
+    ),
     (
         "\n".join(GOOD),
         "",
         "the trace covers 360 deg, a four-stroke cycle has 720 deg; write 'cycle: two-stroke'",
     ),
     # keys that contradict or lack one another
-    (rows(), ", angle_unit: s", "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"),
+    (
+        rows(),
+        ", angle_unit: s",
+        "times become angles by a speed; write 'recorded_speed: 1500 rpm', say",
+    ),
     (rows(), ", angle_unit: rad, recorded_speed: 1500 rpm", "write 'angle_unit: s'"),
-    (rows(), ", angle_unit: s, recorded_speed: 1 rpm", "are 'recorded_speed' and 'angle_unit' (s or ms) right?"),
+    (
+        rows(),
+        ", angle_unit: s, recorded_speed: 1 rpm",
+        "are 'recorded_speed' and 'angle_unit' (s or ms) right?",
+    ),
     (rows(), ", scale: 0", "0 leaves no pressure"),
     (rows(), ", pressure_columns: 61-2", "runs backward or names a column twice"),
     (rows(), ", pressure_columns: 1-3", "column 1 is that of the angles"),
@@ -273,7 +346,11 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
     (rows(), ", pegging: {angle: 5 deg}", "'pressure' is missing"),
     (rows(), ", angle_zero: {motored: p.csv}", "'loss_angle' is missing"),
     (rows(), ", decimal: comma", "a comma cannot be both in numbers and between columns"),
-    ("0,1\n720,1\n", ", angle_zero: {motored: p.csv, loss_angle: 0.5 deg}", "has fewer than five samples within 3 deg"),
+    (
+        "0,1\n720,1\n",
+        ", angle_zero: {motored: p.csv, loss_angle: 0.5 deg}",
+        "has fewer than five samples within 3 deg",
+    ),
 ]
 
 
@@ -296,7 +373,11 @@ def test_what_cannot_be_a_trace_is_named_with_its_line(
     [
         ("\n".join(GOOD[:-1]), "", []),  # the closing sample is missing, as loggers write them
         (holed(100, 120, 0.1), "", ["no samples from 100 to 120 deg; a straight line joins them"]),
-        (rows(np.r_[0:60:0.1, 60:361], np.full(901, 2.0)), "", []),  # a denser stretch leaves no holes elsewhere
+        (
+            rows(np.r_[0:60:0.1, 60:361], np.full(901, 2.0)),
+            "",
+            [],
+        ),  # a denser stretch leaves no holes elsewhere
         ("0,1\n120,2\n120,2\n360,1\n", "", ["1 samples given twice count once"]),
         (
             "".join(f"{a},{1 + a / 100}\n" for a in [*range(180, 360, 5), *range(0, 180, 5)]),
@@ -305,7 +386,9 @@ def test_what_cannot_be_a_trace_is_named_with_its_line(
         ),
     ],
 )
-def test_what_was_tidied_up_is_noted(tmp_path: Path, content: str, keys: str, notes: list[str]) -> None:
+def test_what_was_tidied_up_is_noted(
+    tmp_path: Path, content: str, keys: str, notes: list[str]
+) -> None:
     trace = trace_of(machine(tmp_path, content, keys, cycle="two-stroke"))
     assert len(trace.notes) == len(notes)
     assert all(said in note for said, note in zip(notes, trace.notes))
@@ -314,7 +397,10 @@ def test_what_was_tidied_up_is_noted(tmp_path: Path, content: str, keys: str, no
 
 def test_whole_degrees_and_decimal_commas_below_a_heading(tmp_path: Path) -> None:
     """'0,37,66' is 0 deg and 37.66 bar, or three columns: refused, or doubted, with both readings."""
-    lines = "".join(f"{angle:g},{pressure:.2f}\n".replace(".", ",") for angle, pressure in zip(ANGLES, PRESSURES))
+    lines = "".join(
+        f"{angle:g},{pressure:.2f}\n".replace(".", ",")
+        for angle, pressure in zip(ANGLES, PRESSURES)
+    )
     try:
         one = machine(tmp_path, "Winkel,Druck\n" + lines, ", skip_rows: 1")
         said = "\n".join(note.text for note in machine_notes(Case(one)))
@@ -357,12 +443,18 @@ def test_a_pipe_is_no_file_of_samples(tmp_path: Path) -> None:
 def _all_limits_in(text: str) -> bool:
     """Whether the three limits of size stand in a text, with or without signs between thousands."""
     plain = re.sub(r"(?<=[0-9])[ ,_\u202f](?=[0-9]{3})", "", text)
-    return "64 MiB" in plain and bool(re.search(r"5000000|5 million|5·10⁶", plain)) and "500000" in plain
+    return (
+        "64 MiB" in plain
+        and bool(re.search(r"5000000|5 million|5·10⁶", plain))
+        and "500000" in plain
+    )
 
 
 @pytest.mark.parametrize("large", few(["bytes", "samples"], ["bytes"]))
 def test_all_limits_of_size_are_reported_at_once(tmp_path: Path, large: str) -> None:
-    (tmp_path / "p.csv").write_text("".join(f"{i},1\n" for i in range(500_001)) if large == "samples" else "0,1\n")
+    (tmp_path / "p.csv").write_text(
+        "".join(f"{i},1\n" for i in range(500_001)) if large == "samples" else "0,1\n"
+    )
     if large == "bytes":
         os.truncate(tmp_path / "p.csv", 64 * 2**20 + 1)
     (tmp_path / "m.yaml").write_text(

@@ -16,9 +16,19 @@ from kurbel.machine_file import load, loads
 from kurbel.machine_file.source import SIZE_LIMIT, decode
 from representative import law_of_each
 
-NUMBERS = {"1e3": 1000.0, "1E1": 10.0, "12e-1": 1.2, "1.0e3": 1000.0, "1.0e+1": 10.0, "5.": 5.0, "infinite": math.inf}
+NUMBERS = {
+    "1e3": 1000.0,
+    "1E1": 10.0,
+    "12e-1": 1.2,
+    "1.0e3": 1000.0,
+    "1.0e+1": 10.0,
+    "5.": 5.0,
+    "infinite": math.inf,
+}
 NO_NUMBERS = {  # beside those of the bad files
-    **dict.fromkeys(("NO", "yes", "on", "0777", "0b11", "0o17", "1__0", "2024-13-45"), "expected a number"),
+    **dict.fromkeys(
+        ("NO", "yes", "on", "0777", "0b11", "0o17", "1__0", "2024-13-45"), "expected a number"
+    ),
     **dict.fromkeys(("1:30.5", "12:30:45"), "a ratio is written as one number"),
     **dict.fromkeys(("-.inf", "1e400", "nan", "inf", "9" * 5000), "rod_ratio: "),
 }
@@ -68,14 +78,22 @@ def test_json_is_a_machine_file_too() -> None:
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "latin-1"])
 def test_other_encodings_are_named(encoding: str) -> None:
-    place = "m:2:15: byte 0xF6" if encoding == "latin-1" else "m:1:1: the file is UTF-16; save it as UTF-8"
+    place = (
+        "m:2:15: byte 0xF6"
+        if encoding == "latin-1"
+        else "m:1:1: the file is UTF-16; save it as UTF-8"
+    )
     with pytest.raises(MachineFileError, match=f"^{re.escape(place)}"):
         decode("m", "crank: 1 m\nname: Kurbelgröße".encode(encoding))
     assert decode("m", b"\xef\xbb\xbfcrank: 1 m").text == "crank: 1 m"
 
 
 def test_what_cannot_be_read_is_named(tmp_path: Path) -> None:
-    reasons = {"no/such.yaml": "there is no such file", str(tmp_path): "is a folder", "a\0b": "cannot be read"}
+    reasons = {
+        "no/such.yaml": "there is no such file",
+        str(tmp_path): "is a folder",
+        "a\0b": "cannot be read",
+    }
     for name, reason in reasons.items():
         with pytest.raises(UnreadableFileError, match=reason):
             load(name)
@@ -85,7 +103,9 @@ def test_what_cannot_be_read_is_named(tmp_path: Path) -> None:
 
 def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     for rod in ("300 mm", "2 m"):
-        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(f"crank: 400 mm\nrod: {rod}\n".encode())))
+        monkeypatch.setattr(
+            sys, "stdin", io.TextIOWrapper(io.BytesIO(f"crank: 400 mm\nrod: {rod}\n".encode()))
+        )
         if rod == "2 m":
             assert load("-").name == "machine"
             continue
@@ -96,7 +116,11 @@ def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
 # white space and signs that word processors put in the place of ours: read as what they look like, or refused
 
 # all of Unicode's white space, none beyond its first plane, but the line ends of YAML and the signs that it refuses
-SPACES = [c for c in re.findall(r"\s", "".join(map(chr, range(0x80, 0x10000)))) if c not in "\x85\u2028\u2029"]
+SPACES = [
+    c
+    for c in re.findall(r"\s", "".join(map(chr, range(0x80, 0x10000))))
+    if c not in "\x85\u2028\u2029"
+]
 
 
 @law_of_each(SPACES)
@@ -130,7 +154,8 @@ def test_signs_that_look_like_ours(text: str, plain: str, kind: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["\u0665", "5\u00b2", "\u00bd", "1\u00d710", "\u2163", "4\u200b5", "\ufeff5\u2060", "5\u0301"]
+    "text",
+    ["\u0665", "5\u00b2", "\u00bd", "1\u00d710", "\u2163", "4\u200b5", "\ufeff5\u2060", "5\u0301"],
 )
 def test_what_may_mean_something_else_is_no_number(text: str) -> None:
     with pytest.raises(UnitError, match="expected a number"):
@@ -156,7 +181,9 @@ WORDS: dict[str, list[str]] = {
 
 
 @pytest.mark.parametrize("case", WORDS)
-def test_a_file_name_turns_no_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, case: str) -> None:
+def test_a_file_name_turns_no_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, case: str
+) -> None:
     """What a file is called reaches the terminal and the report without a sign that turns the writing."""
     monkeypatch.chdir(tmp_path)
     Path(f"{TURNED}.yaml").write_text("speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\n")

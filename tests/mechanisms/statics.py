@@ -61,7 +61,12 @@ def yoke_frame(machine: YokeFrame, turn: Any, load: Any) -> Expected:
 def scotch_yoke(machine: ScotchYoke, turn: Any, load: Any) -> Expected:
     """The yoke is upright: its block pushes along the stroke, and slides as fast as the pin rises."""
     pin = machine.crank * turn
-    expected = {**on_pin(turn, -load), "x": -pin.real, "F_pin": load, "c_block": along(1j * pin, 1j)}
+    expected = {
+        **on_pin(turn, -load),
+        "x": -pin.real,
+        "F_pin": load,
+        "c_block": along(1j * pin, 1j),
+    }
     if machine.guide_length is not None:
         expected["N_pair"] = moment(pin, -load) / machine.guide_length
     return expected
@@ -77,13 +82,21 @@ def slotted_lever(machine: SlottedLever, turn: Any, load: Any) -> Expected:
     lever = (pin + machine.frame) / reach
     ahead = 1j * lever
     turning = along(1j * pin, ahead) / reach
-    moved = {"theta": np.degrees(np.angle(lever)), "theta_dot": turning, "c_block": along(1j * pin, lever)}
+    moved = {
+        "theta": np.degrees(np.angle(lever)),
+        "theta_dot": turning,
+        "c_block": along(1j * pin, lever),
+    }
     if machine.lever is None:
         return {**moved, "T": on_pin(turn, load / reach * ahead)["T"]}
     end = machine.lever * lever
     ram, push = end.imag, 1j * load
     if not math.isinf(machine.link):
-        low = 0.0 if machine.frame < machine.crank else math.sqrt(1 - (machine.crank / machine.frame) ** 2)
+        low = (
+            0.0
+            if machine.frame < machine.crank
+            else math.sqrt(1 - (machine.crank / machine.frame) ** 2)
+        )
         middle = machine.lever * (1 + low) / 2 if low else 0.0
         height = middle if machine.ram_height is None else machine.ram_height
         ram = end.imag + np.sqrt(machine.link**2 - (height - end.real) ** 2)
@@ -99,7 +112,9 @@ def four_bar(machine: FourBar, turn: Any, load: Any) -> Expected:
     diagonal = machine.frame - pin
     length = abs(diagonal)
     foot = (length**2 + machine.coupler**2 - machine.rocker**2) / (2 * length)
-    coupler = diagonal / length * (foot + 1j * np.sqrt(machine.coupler**2 - foot**2)) / machine.coupler
+    coupler = (
+        diagonal / length * (foot + 1j * np.sqrt(machine.coupler**2 - foot**2)) / machine.coupler
+    )
     rocker = pin + machine.coupler * coupler - machine.frame
     thrust = -load / moment(rocker, coupler)
     # of two points of one rod, the parts of the speeds along it are equal
@@ -116,8 +131,18 @@ def parallel_crank(machine: ParallelCrank, turn: Any, load: Any) -> Expected:
     thrust = [-load * each / (strain[0] ** 2 + strain[1] ** 2) for each in strain]
     torque = sum(moment(arm, -force) for arm, force in zip(pairs, thrust))
     way = pin - machine.crank
-    point = {"x_coupler": way.real, "y_coupler": way.imag, "bx_coupler": -pin.real, "by_coupler": -pin.imag}
-    return {**point, "T": torque / machine.crank, "theta": np.degrees(np.angle(turn)), "F_coupler": thrust[0]}
+    point = {
+        "x_coupler": way.real,
+        "y_coupler": way.imag,
+        "bx_coupler": -pin.real,
+        "by_coupler": -pin.imag,
+    }
+    return {
+        **point,
+        "T": torque / machine.crank,
+        "theta": np.degrees(np.angle(turn)),
+        "F_coupler": thrust[0],
+    }
 
 
 FREE_BODIES: dict[type, Callable[[Any, Any, Any], Expected]] = {

@@ -20,7 +20,9 @@ SLIDERS = {
     "offset": (HEAD + "crank: 300 mm\nrod: 1300 mm\noffset: 200 mm\n", 0.2),
     "yoke frame": (HEAD + "mechanism: yoke-frame\ncrank: 300 mm\nrod: 1300 mm\n", 0.0),
 }
-FOUR_BAR = HEAD + "mechanism: four-bar\ncrank: 100 mm\ncoupler: 300 mm\nrocker: 250 mm\nframe: 330 mm\n"
+FOUR_BAR = (
+    HEAD + "mechanism: four-bar\ncrank: 100 mm\ncoupler: 300 mm\nrocker: 250 mm\nframe: 330 mm\n"
+)
 ANGLES = (0.0, 17.0, 90.0, 133.0, 180.0, 251.0, 333.0)
 
 
@@ -49,7 +51,9 @@ def rocker_joint(phi: mp.mpf) -> tuple[mp.mpf, mp.mpf]:
     return x + foot * ux - height * uy, y + foot * uy + height * ux
 
 
-def expected(far: object, crank: str, along: mp.mpf, across: mp.mpf, degrees: float) -> tuple[float, ...]:
+def expected(
+    far: object, crank: str, along: mp.mpf, across: mp.mpf, degrees: float
+) -> tuple[float, ...]:
     """x, y, v, b of a point of the rod and angle, velocity, acceleration of the rod, by numerical derivatives."""
     R = mp.mpf(crank)
 
@@ -65,7 +69,11 @@ def expected(far: object, crank: str, along: mp.mpf, across: mp.mpf, degrees: fl
     with mp.workdps(40):
         phi = mp.mpf(degrees) * mp.pi / 180
         v, b = abs(mp.diff(place, phi)) * OMEGA, abs(mp.diff(place, phi, 2)) * OMEGA**2
-        turn = mp.degrees(angle(phi)), mp.diff(angle, phi) * OMEGA, mp.diff(angle, phi, 2) * OMEGA**2
+        turn = (
+            mp.degrees(angle(phi)),
+            mp.diff(angle, phi) * OMEGA,
+            mp.diff(angle, phi, 2) * OMEGA**2,
+        )
         return tuple(float(one) for one in (place(phi).real, place(phi).imag, v, b, *turn))
 
 
@@ -73,10 +81,14 @@ def expected(far: object, crank: str, along: mp.mpf, across: mp.mpf, degrees: fl
 def test_the_rod_and_a_point_of_it(name: str) -> None:
     text, offset = SLIDERS[name]
     s = cylinder(text + POINT).at(ANGLES)
-    found = np.array([s.x_point, s.y_point, s.v_point, s.b_point, -s.psi, -s["psi_dot"], -s["psi_ddot"]]).T
+    found = np.array(
+        [s.x_point, s.y_point, s.v_point, s.b_point, -s.psi, -s["psi_dot"], -s["psi_ddot"]]
+    ).T
     for row, degrees in zip(found, ANGLES):
         along, across = mp.mpf("0.5"), mp.mpf("0.12")
-        assert row == pytest.approx(expected(crosshead_of(offset), "0.3", along, across, degrees), rel=1e-12, abs=1e-12)
+        assert row == pytest.approx(
+            expected(crosshead_of(offset), "0.3", along, across, degrees), rel=1e-12, abs=1e-12
+        )
 
 
 def test_the_coupler_of_the_four_bar_and_a_point_of_it() -> None:
@@ -85,13 +97,19 @@ def test_the_coupler_of_the_four_bar_and_a_point_of_it() -> None:
     found = np.array([s.x_point, s.y_point, s.v_point, s.b_point, *turn]).T
     for row, degrees in zip(found, ANGLES):
         along, across = mp.mpf("0.25"), mp.mpf("-0.08")
-        assert row == pytest.approx(expected(rocker_joint, "0.1", along, across, degrees), rel=1e-12, abs=1e-12)
+        assert row == pytest.approx(
+            expected(rocker_joint, "0.1", along, across, degrees), rel=1e-12, abs=1e-12
+        )
 
 
 def test_mean_speeds_of_the_strokes_after_redtenbacher() -> None:
     """c_a : c_r = β : α (R p. 615), and each is the stroke over its time."""
     motion = Case(load(CONFIGS["shaper"])).cylinders[0].motion
     assert motion.c_return_m / motion.c_work_m == pytest.approx(motion.time_ratio, rel=1e-14)
-    assert motion.stroke / motion.c_work_m + motion.stroke / motion.c_return_m == pytest.approx(1 / motion.speed)
+    assert motion.stroke / motion.c_work_m + motion.stroke / motion.c_return_m == pytest.approx(
+        1 / motion.speed
+    )
     alpha = math.radians(motion.phi_work) / 2
-    assert motion.c_work_m == pytest.approx(motion.stroke * motion.speed * math.pi / alpha, rel=1e-14)
+    assert motion.c_work_m == pytest.approx(
+        motion.stroke * motion.speed * math.pi / alpha, rel=1e-14
+    )

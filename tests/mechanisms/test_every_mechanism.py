@@ -62,7 +62,11 @@ DIRECTIONS = {
     "slotted-lever": lambda machine, angle: machine._lever_at(angle)[:2],
 }
 """(sin θ, cos θ) of the member that swings."""
-MOVED = {name: machine for name, machine in MACHINES.items() if machine.slides or machine.name in DIRECTIONS}
+MOVED = {
+    name: machine
+    for name, machine in MACHINES.items()
+    if machine.slides or machine.name in DIRECTIONS
+}
 SEARCHED = Mechanism.crank_angles_at
 ANGLES = (3.0, 47.0, 90.0, 118.0, 177.0, 181.0, 233.0, 291.0, 352.0)
 
@@ -89,13 +93,17 @@ def test_slope_and_curvature_are_the_derivatives_of_the_coordinate(machine):
         exact = exact_angle(degrees)
         slope, curvature = machine.slope(exact), machine.curvature(exact)
         assert abs(by_radian(function, degrees) - slope) < 1e-14 * (size + abs(slope)), degrees
-        assert abs(by_radian(machine.slope, degrees) - curvature) < 1e-14 * (size + abs(curvature)), degrees
+        assert abs(by_radian(machine.slope, degrees) - curvature) < 1e-14 * (
+            size + abs(curvature)
+        ), degrees
 
 
 @every({name: machine for name, machine in MACHINES.items() if machine.name in DIRECTIONS})
 def test_the_swing_has_the_derivatives_of_its_angle(machine):
     swing = machine.swing_at(CrankAngle.of(np.array(ANGLES)))
-    slopes, curvatures = ([by_radian(exact_swing(machine), one, order) for one in ANGLES] for order in (1, 2))
+    slopes, curvatures = (
+        [by_radian(exact_swing(machine), angle, order) for angle in ANGLES] for order in (1, 2)
+    )
     assert list(map(float, slopes)) == pytest.approx(swing.slope, rel=1e-12, abs=1e-14)
     assert list(map(float, curvatures)) == pytest.approx(swing.curvature, rel=1e-11, abs=1e-13)
 
@@ -108,11 +116,17 @@ def test_what_turns_fully_comes_round_with_the_crank(machine):
     assert machine.stroke == math.tau
     assert theta[0] == pytest.approx(machine.start, abs=1e-15)
     assert theta[-1] - theta[0] == pytest.approx(math.tau, rel=1e-14)
-    mean = (machine.slope(CrankAngle.of(angles))[1:] + machine.slope(CrankAngle.of(angles))[:-1]) / 2
+    mean = (
+        machine.slope(CrankAngle.of(angles))[1:] + machine.slope(CrankAngle.of(angles))[:-1]
+    ) / 2
     assert np.diff(theta) == pytest.approx(mean * math.radians(0.5), rel=0.05)
     assert (mean > 0).all()
-    assert machine.coordinate(CrankAngle.of(angles - 720.0)) == pytest.approx(theta - 4 * math.pi, abs=1e-14)
-    assert np.degrees(theta) == pytest.approx(machine.swing_at(CrankAngle.of(angles)).degrees, abs=1e-12)
+    assert machine.coordinate(CrankAngle.of(angles - 720.0)) == pytest.approx(
+        theta - 4 * math.pi, abs=1e-14
+    )
+    assert np.degrees(theta) == pytest.approx(
+        machine.swing_at(CrankAngle.of(angles)).degrees, abs=1e-12
+    )
 
 
 @every(STROKES)
@@ -122,17 +136,25 @@ def test_the_stroke_runs_from_dead_centre_to_dead_centre(machine):
     ends = machine.coordinate(CrankAngle.of(np.array([inner, outer])))
     rounding = 3e-15 * max(machine.stroke, abs(machine.start))
     assert ends == pytest.approx([machine.start, machine.start + machine.stroke], abs=rounding)
-    assert machine.slope(CrankAngle.of(np.array([inner, outer]))) == pytest.approx([0, 0], abs=2e-14 * machine.stroke)
+    assert machine.slope(CrankAngle.of(np.array([inner, outer]))) == pytest.approx(
+        [0, 0], abs=2e-14 * machine.stroke
+    )
     out = machine.slope(CrankAngle.of(np.linspace(inner, outer, 91)[1:-1]))
     back = machine.slope(CrankAngle.of(np.linspace(outer, inner + 360, 91)[1:-1]))
     assert (out > 0).all()
     assert (back < 0).all()
 
 
-INVERSES = [(machine, one) for machine in STROKES.values() for one in {type(machine).crank_angles_at, SEARCHED}]
+INVERSES = [
+    (machine, one)
+    for machine in STROKES.values()
+    for one in {type(machine).crank_angles_at, SEARCHED}
+]
 
 
-@law_of_each((machine, inverse, outstroke) for machine, inverse in INVERSES for outstroke in (True, False))
+@law_of_each(
+    (machine, inverse, outstroke) for machine, inverse in INVERSES for outstroke in (True, False)
+)
 def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, inverse, outstroke):
     way = machine.stroke * np.array([0.0, 1e-12, 1e-6, 0.01, 0.3, 0.5, 0.77, 0.999, 1 - 1e-9, 1.0])
     angles = inverse(machine, way, outstroke)
@@ -202,7 +224,12 @@ def resized(machine, scale):
     """Return the mechanism with all its lengths, and nothing else, times the scale."""
     fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
     lengths = {key for key, one in machine.KEYS.items() if one.form.kind == "length"}
-    return type(machine)(**{key: value * scale if value and key in lengths else value for key, value in fields.items()})
+    return type(machine)(
+        **{
+            key: value * scale if value and key in lengths else value
+            for key, value in fields.items()
+        }
+    )
 
 
 POWERS = {"m": 1, "m/s": 1, "m/s^2": 1, "N m": 1, "J": 1, "W": 1, "Pa": -2}
@@ -218,8 +245,8 @@ def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, command):
     parts = [report_of(loaded(one), frame).parts[0] for one in (machine, resized(machine, 2.0))]
     powers = POWERS if machine.slides else POWERS_OF_A_MOMENT
     small, large = (
-        {one.id: (one.unit, one.values) for one in part.columns}
-        | {one.id: (one.unit, one.value) for one in part.key_values}
+        {column.id: (column.unit, column.values) for column in part.columns}
+        | {key_value.id: (key_value.unit, key_value.value) for key_value in part.key_values}
         for part in parts
     )
     assert list(small) == list(large)
@@ -227,4 +254,6 @@ def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, command):
     for id, (unit, values) in small.items():
         power = 1 if id == "coupler_inertia" else powers.get(unit, 0)  # of a mass, which stays
         before, after = (np.array(each, dtype=float) for each in (values, large[id][1]))
-        assert after == pytest.approx(before * 2.0**power, rel=1e-12, abs=1e-12 * abs(before).max()), id
+        assert after == pytest.approx(
+            before * 2.0**power, rel=1e-12, abs=1e-12 * abs(before).max()
+        ), id

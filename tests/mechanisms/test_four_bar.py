@@ -20,7 +20,9 @@ def test_equal_strokes_take_equal_times_where_the_diagonals_agree():
     """a² + d² = b² + c²: the central crank-rocker has no quick return."""
     machine = FourBar(0.3, 0.7, math.sqrt(0.09 + 1.0 - 0.49), 1.0)
     assert machine.time_ratio == pytest.approx(1, rel=1e-14)
-    assert machine.swing == pytest.approx(math.degrees(2 * math.asin(0.3 / machine.rocker)), rel=1e-14)
+    assert machine.swing == pytest.approx(
+        math.degrees(2 * math.asin(0.3 / machine.rocker)), rel=1e-14
+    )
 
 
 @given(st.tuples(*[st.integers(1, 60)] * 4))
@@ -32,7 +34,9 @@ def test_grashof_decides(lengths):
     """
     crank, coupler, rocker, frame = lengths
     turns = abs(frame - crank) > abs(coupler - rocker) and frame + crank < coupler + rocker
-    grashof = 2 * (min(lengths) + max(lengths)) < sum(lengths) and min(crank, frame) < min(coupler, rocker)
+    grashof = 2 * (min(lengths) + max(lengths)) < sum(lengths) and min(crank, frame) < min(
+        coupler, rocker
+    )
     assert turns == grashof
     metres = [length / 100 for length in lengths]
     if turns:
@@ -48,7 +52,7 @@ def test_drag_link_in_a_machine_file():
     keys = "crank: 300 mm\ncoupler: 250 mm\nrocker: 300 mm\nframe: 100 mm"
     case = Case(loads(f"speed: 60 rpm\nmechanism: four-bar\n{keys}\nmoment: {{work: 900 Nm}}"))
     report = report_of(case, Frame("motion", (0.0, 90.0), None, "si"))
-    told = {one.id for one in report.parts[0].key_values}
+    told = {key_value.id for key_value in report.parts[0].key_values}
     assert {"theta_dot_max", "transmission_min"} <= told
     assert not {"phi_idc", "phi_odc", "swing", "theta_max", "time_ratio", "c_work_max"} & told
     assert any("drag link" in note for note in report.notes)
@@ -63,4 +67,6 @@ def test_the_transmission_angle_is_that_of_the_cosine_rule():
     for degrees in (0.0, 180.0):
         diagonal = 0.15 - 0.04 * math.cos(math.radians(degrees))
         cosine = (0.15**2 + 0.08**2 - diagonal**2) / (2 * 0.15 * 0.08)
-        assert machine.transmission(degrees).value == pytest.approx(math.degrees(math.acos(cosine)), rel=1e-12)
+        assert machine.transmission(degrees).value == pytest.approx(
+            math.degrees(math.acos(cosine)), rel=1e-12
+        )

@@ -38,7 +38,12 @@ SLIPS = [
     ("four_bar", "coupler_force_factor", "self.coupler / self.frame", "-self.coupler / self.frame"),
     ("parallel_crank", "", "-one.crank * angle.versine", "-one.crank * angle.sin"),
     ("parallel_crank", "", "-one.crank * angle.cos", "one.crank * angle.cos"),
-    ("parallel_crank", "_acceleration", "one.crank * results.omega", "one.crank * one.crank * results.omega"),
+    (
+        "parallel_crank",
+        "_acceleration",
+        "one.crank * results.omega",
+        "one.crank * one.crank * results.omega",
+    ),
     ("parallel_crank", "coupler_force_factor", "angle.sin", "angle.cos"),
 ]
 """File, function ('' for the columns before the class), its text and the wrong one: signs, sine for cosine, factors."""
@@ -47,7 +52,9 @@ SLIPS = [
 def planted(file: str, function: str, right: str, wrong: str) -> types.ModuleType:
     """Return the module with this text replaced where it first stands from that function on."""
     module = importlib.import_module(f"kurbel.mechanisms.{file}")
-    before, head, after = inspect.getsource(module).partition(f"def {function}(" if function else "OFFERS = (")
+    before, head, after = inspect.getsource(module).partition(
+        f"def {function}(" if function else "OFFERS = ("
+    )
     assert right in after, (
         f"{file}.{function} has no '{right}' any more: plant the slip in the formula as it stands now"
     )
@@ -75,7 +82,9 @@ def asked(law: Callable[..., None]) -> Iterator[tuple[Callable[..., None], dict[
             yield law.law, dict(zip(inspect.signature(law.law).parameters, values))
         return
     marks = [mark.args for mark in getattr(law, "pytestmark", ()) if mark.name == "parametrize"]
-    for chosen in itertools.product(*([named(names, one) for one in every] for names, every in marks)):
+    for chosen in itertools.product(
+        *([named(names, one) for one in every] for names, every in marks)
+    ):
         yield law, {name: value for given in chosen for name, value in given.items()}
 
 
@@ -103,7 +112,11 @@ def broken(file: str) -> Iterator[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("file", "function", "right", "wrong"), SLIPS, ids=[" ".join(slip) for slip in SLIPS])
-def test_a_slip_breaks_a_law(file: str, function: str, right: str, wrong: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("file", "function", "right", "wrong"), SLIPS, ids=[" ".join(slip) for slip in SLIPS]
+)
+def test_a_slip_breaks_a_law(
+    file: str, function: str, right: str, wrong: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     take_over(monkeypatch, planted(file, function, right, wrong))
     assert next(broken(file), None) is not None

@@ -16,7 +16,10 @@ DRAWN = {name: one for name, one in MACHINES.items() if one.sketch(CrankAngle.of
 
 def sketch_of(mechanism: Mechanism) -> dict[str, complex]:
     sketch = mechanism.sketch(CrankAngle.of(DEGREES))
-    return {name: np.broadcast_to(x + 1j * np.asarray(y), DEGREES.shape) for name, (x, y) in sketch.joints.items()}
+    return {
+        name: np.broadcast_to(x + 1j * np.asarray(y), DEGREES.shape)
+        for name, (x, y) in sketch.joints.items()
+    }
 
 
 def whole(mechanism: Mechanism) -> Sketch:
@@ -38,13 +41,17 @@ def test_links_are_stiff_unless_something_slides_on_them(name: str) -> None:
     fork = isinstance(mechanism, SlottedLever) and math.isinf(mechanism.link)
     for start, end in sketch.links:
         if fork and (start, end) == ("end", "ram"):
-            assert np.allclose(joints[start].imag, joints[end].imag, atol=1e-12)  # the fork slides along the ram
+            assert np.allclose(
+                joints[start].imag, joints[end].imag, atol=1e-12
+            )  # the fork slides along the ram
             continue
         length = abs(joints[start] - joints[end])
         assert np.ptp(length) <= 1e-9 * length.max()
     for joint, (start, end) in sketch.blocks:
         along = joints[end] - joints[start]
-        assert np.abs(((joints[joint] - joints[start]) * along.conj()).imag).max() <= 1e-12  # on the line of its slot
+        assert (
+            np.abs(((joints[joint] - joints[start]) * along.conj()).imag).max() <= 1e-12
+        )  # on the line of its slot
     for fixed in sketch.fixed:
         assert np.ptp(abs(joints[fixed])) == 0
 

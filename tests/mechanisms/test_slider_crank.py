@@ -20,8 +20,16 @@ def test_largest_velocity(lam):
     """At the zero of b: sin²ψ = q with q³ − q² − q + λ² = 0, and c = v sin φ (1 + q)."""
     exact = mp.mpf(lam)
     with mp.workdps(60):
-        q = mp.findroot(lambda q: q**3 - q**2 - q + exact**2, (mp.mpf(0), mp.mpf(1)), solver="anderson", tol=1e-90)
-        wanted, at = exact * mp.sqrt(q / exact**2) * (1 + q), mp.degrees(mp.asin(mp.sqrt(q / exact**2)))
+        q = mp.findroot(
+            lambda q: q**3 - q**2 - q + exact**2,
+            (mp.mpf(0), mp.mpf(1)),
+            solver="anderson",
+            tol=1e-90,
+        )
+        wanted, at = (
+            exact * mp.sqrt(q / exact**2) * (1 + q),
+            mp.degrees(mp.asin(mp.sqrt(q / exact**2))),
+        )
     found = motion_of(lam)
     assert found.c_max.value == pytest.approx(float(wanted), rel=1e-13)
     assert found.c_max.degrees == pytest.approx(float(at), abs=1e-9)
@@ -36,14 +44,18 @@ def test_smallest_acceleration(lam):
         assert (found.value, found.degrees) == (pytest.approx(lam * (lam - 1), rel=1e-13), 180.0)
         return
     rho = 1 - exact**2
-    y = mp.findroot(lambda y: 3 * y * (1 - y) * (1 + y) ** 2 - rho, (mp.mpf(0), exact), solver="anderson")
+    y = mp.findroot(
+        lambda y: 3 * y * (1 - y) * (1 + y) ** 2 - rho, (mp.mpf(0), exact), solver="anderson"
+    )
     kappa = mp.sqrt(rho / (1 - y**2))
     cos = -y * kappa / exact
     wanted = exact * (cos * (kappa + exact * cos) / kappa - exact * rho * (1 - cos**2) / kappa**3)
     assert found.value == pytest.approx(float(wanted), rel=1e-12)
 
 
-@pytest.mark.parametrize(("offset", "by_ratio"), [*itertools.product((0.0, 0.02, -0.1), (True, False))])
+@pytest.mark.parametrize(
+    ("offset", "by_ratio"), [*itertools.product((0.0, 0.02, -0.1), (True, False))]
+)
 def test_the_stroke_gives_the_crank(offset, by_ratio):
     size = {"rod_ratio": 4.0} if by_ratio else {"rod": 1.2}
     machine = SliderCrank.from_keys(stroke=0.6, offset=offset, **size)
@@ -54,8 +66,17 @@ def test_the_stroke_gives_the_crank(offset, by_ratio):
 @pytest.mark.parametrize("offset", [0.05, -0.3])
 def test_displacement_keeps_its_digits_beside_the_inner_dead_centre(offset: float) -> None:
     """A thousandth of a degree away it is 1e-10 of the crank, of which small clearances need every digit."""
-    mechanism, degrees = SliderCrank(0.4, 2.0, offset), SliderCrank(0.4, 2.0, offset).dead_centres()[0] + 1e-3
+    mechanism, degrees = (
+        SliderCrank(0.4, 2.0, offset),
+        SliderCrank(0.4, 2.0, offset).dead_centres()[0] + 1e-3,
+    )
     with mp.workdps(40):
         R, L, e, phi = mp.mpf(0.4), mp.mpf(2), mp.mpf(offset), mp.radians(mp.mpf(degrees))
-        true = mp.sqrt((L + R) ** 2 - e**2) - R * mp.cos(phi) - mp.sqrt(L**2 - (R * mp.sin(phi) - e) ** 2)
-    assert float(mechanism.coordinate(CrankAngle.of(degrees))) == pytest.approx(float(true), rel=1e-9)
+        true = (
+            mp.sqrt((L + R) ** 2 - e**2)
+            - R * mp.cos(phi)
+            - mp.sqrt(L**2 - (R * mp.sin(phi) - e) ** 2)
+        )
+    assert float(mechanism.coordinate(CrankAngle.of(degrees))) == pytest.approx(
+        float(true), rel=1e-9
+    )

@@ -20,9 +20,11 @@ def test_angles_and_times_need_no_lever(crank, frame, ratio, swing):
 
     The two strokes part the turn at cos β = r/e, or e/r (R p. 615); no ram, so no x, c, b and stroke.
     """
-    case = Case(loads(f"speed: 60 rpm\nmechanism: slotted-lever\ncrank: {crank} mm\nframe: {frame} mm"))
+    case = Case(
+        loads(f"speed: 60 rpm\nmechanism: slotted-lever\ncrank: {crank} mm\nframe: {frame} mm")
+    )
     report = report_of(case, Frame("motion", (0.0, 90.0), None, "si"))
-    told = {one.id: one.value for one in report.parts[0].key_values}
+    told = {key_value.id: key_value.value for key_value in report.parts[0].key_values}
     # the book rounds the angle of the return stroke to 96.4°
     assert told["time_ratio"] == pytest.approx(ratio, abs=2e-3)
     half = math.degrees(math.acos(min(crank, frame) / max(crank, frame)))
@@ -36,5 +38,7 @@ def test_angles_and_times_need_no_lever(crank, frame, ratio, swing):
 def test_a_slot_that_ends_before_the_pin_does_is_told() -> None:
     """The pin is MD + r from the pivot at the farthest: 240 + 120 = 360 mm."""
     (told,) = SlottedLever(0.12, 0.24, 0.3).notes
-    assert told.startswith("The pin slides as far as 360 mm from the lever's pivot, past its end at 300 mm")
+    assert told.startswith(
+        "The pin slides as far as 360 mm from the lever's pivot, past its end at 300 mm"
+    )
     assert SlottedLever(0.12, 0.24, 0.36).notes == ()

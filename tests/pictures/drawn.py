@@ -33,12 +33,15 @@ def drawn(name: str, id: str) -> tuple[Picture, ...]:
 
 def ids_of(case: str | Case) -> tuple[str, ...]:
     """The pictures of a shipped machine, or of another."""
-    return tuple(one.id for one in pictures_of(case if isinstance(case, Case) else case_of(case), PictureOptions()))
+    return tuple(
+        one.id
+        for one in pictures_of(case if isinstance(case, Case) else case_of(case), PictureOptions())
+    )
 
 
 def curve_of(panel: Panel, symbol: str) -> Curve:
     """The curve of this symbol."""
-    return next(one for one in panel.curves if one.name.symbol == symbol)
+    return next(curve for curve in panel.curves if curve.name.symbol == symbol)
 
 
 def on_its_side(degrees: np.ndarray) -> np.ndarray:
@@ -54,7 +57,12 @@ def off_line(curve: Curve, points: np.ndarray) -> float:
         z = x + 1j * y
         start, chord = z[:-1, None], np.diff(z)[:, None]
         along = np.divide(
-            points - start, chord, out=np.zeros((len(start), len(points)), complex), where=chord != 0
+            points - start,
+            chord,
+            out=np.zeros((len(start), len(points)), complex),
+            where=chord != 0,
         ).real
-        least = np.minimum(least, np.abs(points - start - along.real.clip(0, 1) * chord).min(axis=0))
+        least = np.minimum(
+            least, np.abs(points - start - along.real.clip(0, 1) * chord).min(axis=0)
+        )
     return float(least.max())

@@ -38,10 +38,15 @@ def test_ruler_and_compasses_give_what_the_solver_computes(name: str) -> None:
         x, c = float(state.x[number]), float(state.c[number])
         assert (way["A"] - way["x"]).real == pytest.approx(x, abs=1e-12)
         assert (way["E"] - way["C"]).real == pytest.approx(x, abs=1e-12)
-        figures = {mark.figure.name.symbol: mark.figure.value for mark in picture.panels[3 * number + 1].marks}
+        figures = {
+            mark.figure.name.symbol: mark.figure.value
+            for mark in picture.panels[3 * number + 1].marks
+        }
         assert figures["v"] == pytest.approx(v)
         assert figures["c"] == pytest.approx(c, abs=1e-12)
-        assert figures["v_s"] == pytest.approx(v * np.sin(np.radians(ANGLES[number]) + psi[number]), abs=1e-12)
+        assert figures["v_s"] == pytest.approx(
+            v * np.sin(np.radians(ANGLES[number]) + psi[number]), abs=1e-12
+        )
         assert polar["c"] == pytest.approx(1j * c, abs=1e-12)
         assert abs(polar["G"]) == pytest.approx(abs(figures["v_s"]), abs=1e-12)
         # the tips of both components and of v lie square to the rod
@@ -55,7 +60,9 @@ def test_the_parallel_through_the_foot_gives_the_velocity_of_the_ram() -> None:
     for panel, c in zip(picture.panels, case.cylinders[0].at(ANGLES).c):
         at = places(panel)
         assert (at["G"] - at["H"]).real == pytest.approx(float(c), abs=1e-12)
-        assert ((at["C"] - at["G"]) * (at["F"] - at["H"]).conjugate()).imag == pytest.approx(0.0, abs=1e-12)
+        assert ((at["C"] - at["G"]) * (at["F"] - at["H"]).conjugate()).imag == pytest.approx(
+            0.0, abs=1e-12
+        )
         assert abs(at["F"] - at["D"] / 2) == pytest.approx(abs(at["D"]) / 2)
 
 
@@ -63,7 +70,10 @@ def test_the_parallel_through_the_foot_gives_the_velocity_of_the_ram() -> None:
 def test_the_tangential_force_is_found_on_the_vertical(name: str) -> None:
     """R Abb. 1063; a block that rubs would push the pin across the stroke, too."""
     machine = case_of(name).machine
-    without = [replace(one, friction=None) if "yoke" in name else one for one in machine.cylinders]
+    without = [
+        replace(cylinder, friction=None) if "yoke" in name else cylinder
+        for cylinder in machine.cylinders
+    ]
     case = Case(replace(machine, cylinders=tuple(without)))
     (picture,) = pictures(case, ("force-polar",), PictureOptions(system="si", angles=ANGLES))
     for panel, force in zip(picture.panels, case.cylinders[0].at(ANGLES).T):
@@ -95,7 +105,11 @@ def test_the_pump_is_laid_over_the_steam() -> None:
         x, steam = curve_of(out, "η P_driving").x, curve_of(out, "η P_driving").y
         rest = np.interp(x, curve_of(out, "−P_driven − P_b").x, curve_of(out, "−P_driven − P_b").y)
         P = convert(
-            np.asarray(case.cylinders[0].at(case.cylinders[0].drive.mechanism.crank_angles_at(x / 1e3, True)).P),
+            np.asarray(
+                case.cylinders[0]
+                .at(case.cylinders[0].drive.mechanism.crank_angles_at(x / 1e3, True))
+                .P
+            ),
             "force",
             "kgf",
         )
@@ -108,7 +122,8 @@ def test_cranks_and_sides_add_up_to_the_turning_effort(efficiency: str) -> None:
     """R Abb. 1064 and 1067: the cranks give the sum, the driving side less the pumps gives the effort."""
     case = Case(loads(case_of("waterworks-two-cranks").machine.origin.text + efficiency))
     cranks, sides = (
-        next(pictures(case, (id,), PictureOptions(system="si"))).panels[0] for id in ("effort-cranks", "effort-sides")
+        next(pictures(case, (id,), PictureOptions(system="si"))).panels[0]
+        for id in ("effort-cranks", "effort-sides")
     )
     phi = np.linspace(1.3, 358.7, 200)
 
@@ -124,4 +139,7 @@ def test_cranks_and_sides_add_up_to_the_turning_effort(efficiency: str) -> None:
     assert at(cranks, "T with η" if efficiency else "T") == pytest.approx(whole, abs=2 * size)
     assert at(sides, "T_driving") - at(sides, "−T_driven") == pytest.approx(whole, abs=3 * size)
     assert (curve_of(sides, "−T_driven").y > 0).all()
-    assert [mark.figure.at_deg for mark in cranks.marks] == [case.flywheel.T_max.degrees, case.flywheel.T_min.degrees]
+    assert [mark.figure.at_deg for mark in cranks.marks] == [
+        case.flywheel.T_max.degrees,
+        case.flywheel.T_min.degrees,
+    ]

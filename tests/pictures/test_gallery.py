@@ -17,7 +17,7 @@ DOCS = ROOT / "docs"
 
 def test_the_page_is_current_and_complete(kept: Callable[[Path, str], str]) -> None:
     assert kept(DOCS / "gallery.md", gallery.page()) == gallery.page()
-    assert {id for id, _ in gallery.shown()} == {one.id for one in PICTURES}
+    assert {id for id, _ in gallery.shown()} == {picture.id for picture in PICTURES}
     assert sum(id == "mechanism" for id, _ in gallery.shown()) == len(MECHANISMS)
 
 
@@ -34,7 +34,9 @@ def pictures_on(page: Path) -> list[str]:
 
 
 def words_in(svg: str) -> list[str]:
-    found = (one for one in ElementTree.fromstring(svg).iter() if one.tag.endswith(("text", "title")))
+    found = (
+        one for one in ElementTree.fromstring(svg).iter() if one.tag.endswith(("text", "title"))
+    )
     return ["".join(one.itertext()) for one in found]
 
 

@@ -16,11 +16,15 @@ from kurbel.render import Look
 from kurbel.render.braille import braille
 from kurbel.render.picture import PanelFrame, picture_text
 from kurbel.render.svg import PAPER_SIZES
-from kurbel.render.text import plain
+from kurbel.render.text import plain_lines
 from representative import case_of
 
 LINES = {
-    "waterworks": {"piston-force": ("P_0", "P"), "forces": ("S", "N", "D", "T"), "motion": ("x", "c", "b")},
+    "waterworks": {
+        "piston-force": ("P_0", "P"),
+        "forces": ("S", "N", "D", "T"),
+        "motion": ("x", "c", "b"),
+    },
     "gas-engine": {"throw-stress": ("σ_pin", "σ_w,A"), "effort": ("T", "E")},
     "diesel-trace": {"forces": ("S", "N", "D", "T"), "effort": ("T", "E")},
     "coupled-blower": {"effort": ("T", "ω", "M_K")},
@@ -29,18 +33,22 @@ LINES = {
 
 
 def panels_with(picture: Picture, symbol: str) -> list[Panel]:
-    return [one for one in picture.panels if symbol in [curve.name.symbol for curve in one.curves]]
+    return [
+        panel for panel in picture.panels if symbol in [curve.name.symbol for curve in panel.curves]
+    ]
 
 
-@pytest.mark.parametrize(("name", "id"), [(name, id) for name, every in LINES.items() for id in every])
+@pytest.mark.parametrize(
+    ("name", "id"), [(name, id) for name, every in LINES.items() for id in every]
+)
 def test_every_point_is_the_solvers(name: str, id: str) -> None:
     """Each point of a curve, bit by bit, is what the solver says at its crank angle, on its side of a jump."""
     case = case_of(name)
-    command = next(one.command for one in PICTURES if one.id == id)
+    command = next(picture.command for picture in PICTURES if picture.id == id)
     results = {"flywheel": lambda: case.flywheel, "stress": lambda: case.stress}.get(
         command, lambda: case.cylinders[0]
     )()
-    declared = {one.symbol: one for one in results.lists.all_columns}
+    declared = {column.symbol: column for column in results.lists.all_columns}
     for symbol in LINES[name][id]:
         quantity = declared[symbol]
         panel = panels_with(drawn(name, id)[0], symbol)[-1 if symbol == "P" else 0]
@@ -54,15 +62,27 @@ def test_marks_stand_where_the_key_values_do(name: str) -> None:
     case = case_of(name)
     for id in LINES[name]:
         for picture in drawn(name, id):
-            results = case.flywheel if id == "effort" else case.stress if id == "throw-stress" else case.cylinders[0]
-            known = {one.quantity.symbol: one for one in results.key_values().values()}
+            results = (
+                case.flywheel
+                if id == "effort"
+                else case.stress
+                if id == "throw-stress"
+                else case.cylinders[0]
+            )
+            known = {
+                key_value.quantity.symbol: key_value for key_value in results.key_values().values()
+            }
             for panel in picture.panels:
                 for mark in panel.marks:
                     if mark.figure.name.symbol == "force reversal":
                         continue
                     figure = known[mark.figure.name.symbol]
                     assert mark.figure.at_deg == figure.degrees
-                    assert mark.y == mark.figure.value == convert(figure.value, figure.quantity.kind, panel.y.unit)
+                    assert (
+                        mark.y
+                        == mark.figure.value
+                        == convert(figure.value, figure.quantity.kind, panel.y.unit)
+                    )
                     assert mark.x == figure.degrees
 
 
@@ -87,7 +107,11 @@ def test_lobes_are_shaded_and_numbered_with_their_work() -> None:
         assert shade.figure.value == pytest.approx(work / 1e3, rel=1e-15)
         assert shade.gain == (work > 0)
     ends = {end for shade in panel.shades for end in (shade.x[0], shade.x[-1])}
-    assert ends == {0.0, 360.0, *turning.phi_crossing}  # where they cross, rounding may leave either of them above
+    assert ends == {
+        0.0,
+        360.0,
+        *turning.phi_crossing,
+    }  # where they cross, rounding may leave either of them above
     # the surface itself, in kN times the way of the pin in m, is that work: straight lines miss it by their fineness
     first = figures["A_2"]
     area = float(trapezoid(first.high - first.low, np.radians(first.x))) * turning.crank
@@ -111,7 +135,11 @@ def test_the_arrows_are_the_forces() -> None:
     """Each points along its force; T and D at the pin add up to the rod force, P and N at the crosshead as well."""
     case = case_of("waterworks")
     (picture,) = pictures(case, ("mechanism",), PictureOptions(angles=(40.0,)))
-    drawn_ = {one.name.symbol: one.x + 1j * one.y for one in picture.panels[0].curves if one.kind == "force"}
+    drawn_ = {
+        curve.name.symbol: curve.x + 1j * curve.y
+        for curve in picture.panels[0].curves
+        if curve.kind == "force"
+    }
     arrows = {symbol: head - tail for symbol, (tail, head) in drawn_.items()}
     state = case.cylinders[0].at([40.0])
     scale = abs(arrows["P"]) / abs(float(state.P[0]))
@@ -120,7 +148,9 @@ def test_the_arrows_are_the_forces() -> None:
         * (float(state.T[0]) * 1j - float(state.D[0]))
         * complex(math.cos(math.radians(40)), math.sin(math.radians(40)))
     )
-    assert abs(arrows["T"] + arrows["D"]) == pytest.approx(scale * abs(float(state.S[0])), rel=1e-12)
+    assert abs(arrows["T"] + arrows["D"]) == pytest.approx(
+        scale * abs(float(state.S[0])), rel=1e-12
+    )
     assert arrows["P"] == pytest.approx(-scale * float(state.P[0]))
     assert arrows["N"] == pytest.approx(-1j * scale * float(state.N[0]))
 
@@ -148,7 +178,9 @@ def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:
     for picture, part in zip(pictures_, case.bearings.parts):
         for panel in picture.panels:
             columns = part.at(np.linspace(0.1, 719.9, 500))
-            direction = np.radians(np.nan_to_num(getattr(columns, f"load_{panel.title.partition(':')[0]}")))
+            direction = np.radians(
+                np.nan_to_num(getattr(columns, f"load_{panel.title.partition(':')[0]}"))
+            )
             tips = np.asarray(columns.load) / 1e3 * np.exp(1j * direction)
             assert off_line(panel.curves[0], tips) <= 2e-3 * np.abs(tips).max()
             mark, *_ = panel.marks
@@ -172,13 +204,28 @@ def test_where_an_order_meets_a_mode_the_speed_is_critical() -> None:
     """n = 60 f/ν, the frequency of the mode over the periods per turn; the working speed is that of the file."""
     for name, working in (("torsional-damper", 2000), ("marine-diesel", 110)):
         case, (panel,) = case_of(name), drawn(name, "campbell")[0].panels
-        lines = {one.name.symbol: one for one in panel.curves}
-        frequencies = [float(omega) / (2 * math.pi) for omega in case.torsion.modes.omegas if omega > 1e-6]
+        lines = {curve.name.symbol: curve for curve in panel.curves}
+        frequencies = [
+            float(omega) / (2 * math.pi) for omega in case.torsion.modes.omegas if omega > 1e-6
+        ]
         assert lines["working speed"].x.tolist() == pytest.approx([working, working])
-        slopes = [60 * one.y[1] / one.x[1] for one in panel.curves if one.kind == "faint" and not one.name.symbol]
-        orders = {float(mark.figure.name.symbol.removeprefix("ν = ").removesuffix(":")) for mark in panel.marks}
-        assert sorted(orders) == pytest.approx(sorted(slopes))  # periods per turn times turns per second
-        assert orders >= {one.order for one in case.torsion.critical_speeds(2, 12) if one.near}
+        slopes = [
+            60 * curve.y[1] / curve.x[1]
+            for curve in panel.curves
+            if curve.kind == "faint" and not curve.name.symbol
+        ]
+        orders = {
+            float(mark.figure.name.symbol.removeprefix("ν = ").removesuffix(":"))
+            for mark in panel.marks
+        }
+        assert sorted(orders) == pytest.approx(
+            sorted(slopes)
+        )  # periods per turn times turns per second
+        assert orders >= {
+            critical_speed.order
+            for critical_speed in case.torsion.critical_speeds(2, 12)
+            if critical_speed.near
+        }
         met = 0
         for mark in panel.marks:
             mode = min(frequencies, key=lambda frequency: abs(frequency - mark.y))
@@ -194,7 +241,11 @@ def test_where_an_order_meets_a_mode_the_speed_is_critical() -> None:
 def test_names_of_masses_are_whole(columns: int) -> None:
     """Below the axis where they have room, or else as a list behind their numbers."""
     masses = [mass.name for mass in case_of("torsional-damper").torsion.line.masses]
-    text = " ".join("".join(plain(braille(drawn("torsional-damper", "modes")[0], Look(width=columns)))).split())
+    text = " ".join(
+        "".join(
+            plain_lines(braille(drawn("torsional-damper", "modes")[0], Look(width=columns)))
+        ).split()
+    )
     assert all(name in text for name in masses)
 
 
@@ -202,7 +253,7 @@ def test_crank_angles_are_on_the_polar_curves() -> None:
     """Every 30°, each where the columns have the load then; from 0, which is on the picture, too."""
     part = case_of("gas-engine").bearings.parts[0]
     panel = drawn("gas-engine", "bearing-loads")[0].panels[0]
-    beads = next(one for one in panel.curves if one.kind == "beads")
+    beads = next(curve for curve in panel.curves if curve.kind == "beads")
     columns = part.at(np.arange(0.0, 720.0, 30.0))
     expected = np.asarray(columns.load) / 1e3 * np.exp(1j * np.radians(columns.load_throw))
     assert beads.x + 1j * beads.y == pytest.approx(expected, rel=1e-9)
@@ -236,9 +287,13 @@ def test_rounding_of_a_constant_is_not_refined() -> None:
     random = np.random.default_rng(1)
 
     def values(degrees: Array, within: Array) -> Array:
-        return np.array([np.sin(np.radians(degrees)), 2737.0 + random.normal(0.0, 1e-12, degrees.shape)])
+        return np.array(
+            [np.sin(np.radians(degrees)), 2737.0 + random.normal(0.0, 1e-12, degrees.shape)]
+        )
 
-    alone = sampled(np.array([0.0, 180.0, 360.0]), lambda degrees, within: values(degrees, within)[:1])
+    alone = sampled(
+        np.array([0.0, 180.0, 360.0]), lambda degrees, within: values(degrees, within)[:1]
+    )
     both = sampled(np.array([0.0, 180.0, 360.0]), values)
     assert len(both.degrees) == len(alone.degrees)
 
@@ -257,7 +312,7 @@ def test_a_card_is_a_closed_line() -> None:
 def test_a_diagram_that_would_be_a_line_or_empty_is_left_out() -> None:
     """A load along the rod is a line to the rod; a torque that never changes has no orders."""
     (picture,) = [one for one in drawn("locomotive", "bearing-loads") if one.of == "crosshead pin"]
-    assert [one.title for one in picture.panels] == ["engine: stroke line →"]
+    assert [panel.title for panel in picture.panels] == ["engine: stroke line →"]
     assert "orders" not in ids_of("punch")
     assert "orders" in ids_of("shaper")
 

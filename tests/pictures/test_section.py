@@ -31,7 +31,9 @@ def panel_of(case: Case, *angles: float) -> Panel:
 
 
 def placed(body: Body, point: complex, moment: int = 0) -> complex:
-    place, turn, stretch = (one[min(moment, len(one) - 1)] for one in (body.place, body.turn, body.stretch))
+    place, turn, stretch = (
+        one[min(moment, len(one) - 1)] for one in (body.place, body.turn, body.stretch)
+    )
     return place + np.exp(1j * math.radians(turn)) * (stretch * point.real + 1j * point.imag)
 
 
@@ -89,7 +91,11 @@ def test_the_sense_of_rotation(rotation: str, sense: int) -> None:
 def test_a_throw_from_the_side_is_as_high_as_its_cosine() -> None:
     """Cranks of 1-5-3-4-2-6 lag by 0, 240, 120, 180, 60 and 300°; the axes of shaft and cylinders are to scale."""
     panel = panel_of(case_of("marine-diesel"), 25.0)
-    heights = [body.place[0].imag for body in panel.bodies if [one.look for one in body.shapes[:2]] == ["metal", "rod"]]
+    heights = [
+        body.place[0].imag
+        for body in panel.bodies
+        if [shape.look for shape in body.shapes[:2]] == ["metal", "rod"]
+    ]
     lags = np.array([0.0, 240.0, 120.0, 180.0, 60.0, 300.0])
     assert np.allclose(heights, 0.45 * np.cos(np.radians(25.0 - lags)), atol=1e-12)
 
@@ -97,11 +103,15 @@ def test_a_throw_from_the_side_is_as_high_as_its_cosine() -> None:
 def test_four_bars_are_as_long_as_the_file_says() -> None:
     for degrees in ANGLES:
         panel = panel_of(case_of("crank-rocker"), degrees)
-        bars = [one for one in panel.bodies if one.shapes[0].look == "rod"]
-        lengths = {max(shape.points[0].real for shape in bar.shapes if shape.radius): bar for bar in bars}
+        bars = [body for body in panel.bodies if body.shapes[0].look == "rod"]
+        lengths = {
+            max(shape.points[0].real for shape in bar.shapes if shape.radius): bar for bar in bars
+        }
         assert sorted(lengths) == pytest.approx([0.08, 0.15])
         coupler, rocker = lengths[max(lengths)], lengths[min(lengths)]
-        assert placed(coupler, 0j) == pytest.approx(0.04 * np.exp(1j * math.radians(degrees)), abs=1e-12)
+        assert placed(coupler, 0j) == pytest.approx(
+            0.04 * np.exp(1j * math.radians(degrees)), abs=1e-12
+        )
         assert placed(coupler, 0.15 + 0j) == pytest.approx(placed(rocker, 0j), abs=1e-12)
         assert placed(rocker, 0.08 + 0j) == pytest.approx(0.15, abs=1e-12)
 
@@ -109,14 +119,16 @@ def test_four_bars_are_as_long_as_the_file_says() -> None:
 def test_mechanisms_without_pistons_may_be_several() -> None:
     text = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm}"
     panel = panel_of(Case(loads(f"{{cylinders: [{text}, {text}]}}")), 60.0)
-    assert [one.text for one in panel.captions] == ["1"]
+    assert [caption.text for caption in panel.captions] == ["1"]
 
 
 # the chambers
 
 
 def chambers(panel: Panel) -> list[tuple[Body, Shape]]:
-    return [(one, one.shapes[0]) for one in panel.bodies if one.shapes[0].look in ("gas", "liquid")]
+    return [
+        (body, body.shapes[0]) for body in panel.bodies if body.shapes[0].look in ("gas", "liquid")
+    ]
 
 
 def test_volumes_are_those_of_the_cylinder() -> None:
@@ -126,23 +138,35 @@ def test_volumes_are_those_of_the_cylinder() -> None:
         (_, _), (head, shape) = chambers(panel_of(case, degrees))
         bore = np.ptp(shape.points.imag)
         assert bore == pytest.approx(0.35)
-        assert math.pi / 4 * bore**2 * head.stretch[0] == pytest.approx(float(case.cylinders[0].at([degrees]).V[0]))
+        assert math.pi / 4 * bore**2 * head.stretch[0] == pytest.approx(
+            float(case.cylinders[0].at([degrees]).V[0])
+        )
 
 
-@pytest.mark.parametrize("name", few(["waterworks", "scotch-yoke-pump", "compressor-two-stage"], ["waterworks"]))
+@pytest.mark.parametrize(
+    "name", few(["waterworks", "scotch-yoke-pump", "compressor-two-stage"], ["waterworks"])
+)
 def test_what_a_piston_sweeps_is_the_stroke(name: str) -> None:
     case = case_of(name)
     inner, outer = (chambers(panel_of(case, degrees)) for degrees in (0.0, 180.0))
     stroke = case.machine.cylinders[0].mechanism.stroke
     for (before, _), (after, _) in zip(inner, outer):
         assert abs(after.stretch[0] - before.stretch[0]) == pytest.approx(stroke)
-    bores = [piston.bore for one in case.machine.cylinders for piston in one.pistons for _ in piston.chambers]
+    bores = [
+        piston.bore
+        for cylinder in case.machine.cylinders
+        for piston in cylinder.pistons
+        for _ in piston.chambers
+    ]
     assert sorted(np.ptp(shape.points.imag) for _, shape in inner) == pytest.approx(sorted(bores))
 
 
 def test_chambers_are_tinted_by_their_pressure() -> None:
     """9.5 at against 1.2 at; water is not steam, and a single-acting engine has no second chamber."""
-    looks = [(shape.look, float(body.tint[0])) for body, shape in chambers(panel_of(case_of("waterworks"), 40.0))]
+    looks = [
+        (shape.look, float(body.tint[0]))
+        for body, shape in chambers(panel_of(case_of("waterworks"), 40.0))
+    ]
     (steam_out, steam_in), pump = looks[:2], looks[2:]
     assert (steam_out[0], {look for look, _ in pump}) == ("gas", {"liquid"})
     assert steam_in[1] > 0.7 > 0.2 > steam_out[1]
@@ -152,7 +176,9 @@ def test_chambers_are_tinted_by_their_pressure() -> None:
 def test_a_picture_at_one_angle_is_tinted_like_the_moving_one() -> None:
     """A compressor draws in no water, though it has one pressure at one angle; a charge is darkest as it burns."""
     assert {shape.look for _, shape in chambers(panel_of(case_of("compressor"), 40.0))} == {"gas"}
-    ((burning, _),), ((drawn_in, _),) = (chambers(panel_of(case_of("diesel-four-stroke"), at)) for at in (10.0, 450.0))
+    ((burning, _),), ((drawn_in, _),) = (
+        chambers(panel_of(case_of("diesel-four-stroke"), at)) for at in (10.0, 450.0)
+    )
     assert float(burning.tint[0]) > 0.7 > 0.2 > float(drawn_in.tint[0])
 
 
@@ -168,7 +194,10 @@ def texts_in(root: ElementTree.Element, at: complex = 0j) -> list[tuple[complex,
             moved += complex(*map(float, match.groups()))
         if one.tag.endswith("text"):
             words = "".join(one.itertext())
-            place, wide = moved + complex(float(one.get("x", 0)), float(one.get("y", 0))), 6.6 * len(words)
+            place, wide = (
+                moved + complex(float(one.get("x", 0)), float(one.get("y", 0))),
+                6.6 * len(words),
+            )
             shift = {"middle": 0.0, "end": -wide / 2}.get(one.get("text-anchor", ""), wide / 2)
             found.append((place + shift, wide / 2, words))
         found += texts_in(one, moved)
@@ -223,7 +252,10 @@ def test_forces_are_clear_of_rod_and_crosshead() -> None:
 
 def test_one_cylinder_of_several_has_its_forces() -> None:
     case = case_of("v8-cross-plane")
-    whole, one = (next(pictures(case, ("mechanism",), PictureOptions(cylinder=name))) for name in (None, "left 2"))
+    whole, one = (
+        next(pictures(case, ("mechanism",), PictureOptions(cylinder=name)))
+        for name in (None, "left 2")
+    )
     assert (whole.panels[0].curves, whole.of) == ((), "")
     assert one.of == "left 2"
     assert {curve.name.symbol for curve in one.panels[0].curves} == {"P", "N", "T", "D"}
@@ -236,7 +268,12 @@ def test_a_poster(tmp_path: Path) -> None:
     pytest.importorskip("typst")
     for size, name in (("A2", "a.pdf"), ("a4", "b.svg")):
         file = tmp_path / name
-        assert run("plot", CONFIGS["waterworks"], "mechanism", "--poster", size, "-o", str(file)).exit_code == 0
+        assert (
+            run(
+                "plot", CONFIGS["waterworks"], "mechanism", "--poster", size, "-o", str(file)
+            ).exit_code
+            == 0
+        )
         drawn = file.read_bytes()
         assert len(drawn) <= 400_000
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
@@ -245,10 +282,14 @@ def test_a_poster(tmp_path: Path) -> None:
     assert points == pytest.approx([210 / 25.4 * 72, 297 / 25.4 * 72], abs=0.1)
 
 
-def test_without_typst_a_poster_names_the_way_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_typst_a_poster_names_the_way_out(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     import importlib.util
 
     monkeypatch.setattr(importlib.util, "find_spec", lambda name, *more: None)
     result = run("plot", CONFIGS["waterworks"], "--poster", "A2", "-o", str(tmp_path / "x.svg"))
     assert result.exit_code == 2
-    assert "a poster needs typst, which is not installed: pip install 'kurbel[plot]'" in result.stderr
+    assert (
+        "a poster needs typst, which is not installed: pip install 'kurbel[plot]'" in result.stderr
+    )

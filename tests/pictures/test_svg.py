@@ -86,11 +86,13 @@ def test_every_mechanism_of_the_book_moves(name: str) -> None:
     """Round and round; for those who want nothing to move it is drawn once more, at rest, with its angle."""
     text = svg_file(drawn(name, "mechanism"), Look())
     root = ElementTree.fromstring(text)
-    moving, resting = ([one for one in root.iter() if one.get("class") == kind] for kind in ("moving", "still"))
+    moving, resting = (
+        [one for one in root.iter() if one.get("class") == kind] for kind in ("moving", "still")
+    )
     assert len(moving) == len(resting) > 2
     moves = [one for one in root.iter() if one.tag.rpartition("}")[2].startswith("animate")]
     forces = {"d", "x", "y"} if len(case_of(name).cylinders) == 1 else {"opacity"}
-    assert {"transform", *forces} <= {one.get("attributeName") for one in moves}
+    assert {"transform", *forces} <= {move.get("attributeName") for move in moves}
     assert all(any(one in moves for one in group.iter()) for group in moving if len(group))
     assert not any(one in moves for group in resting for one in group.iter())
     for one in moves:
@@ -101,14 +103,18 @@ def test_every_mechanism_of_the_book_moves(name: str) -> None:
         else:
             assert (len(values) - 1) % 48 == 0
             assert float(one.get("dur", "").removesuffix("s")) == 5 * (len(values) - 1) / 48
-        apart = float(values[-1]) - float(values[0]) if turning else 360.0 * (values[0] != values[-1])
+        apart = (
+            float(values[-1]) - float(values[0]) if turning else 360.0 * (values[0] != values[-1])
+        )
         assert apart % 360 == 0 if turning else apart == 0
     assert "prefers-reduced-motion" in text
     texts = ["".join(one.itertext()) for group in resting for one in group.iter()]
     assert any("φ = " in one for one in texts)
     assert not any("φ = " in "".join(group.itertext()) for group in moving)
     assert "animate" not in svg_file(drawn("waterworks", "forces"), Look())
-    standing = svg_file(list(pictures(case_of(name), ("mechanism",), PictureOptions(angles=(45.0,)))), Look())
+    standing = svg_file(
+        list(pictures(case_of(name), ("mechanism",), PictureOptions(angles=(45.0,)))), Look()
+    )
     assert "φ = 45°" in standing
     assert "still" not in standing.split("</style>")[1]
     assert "animate" not in standing
@@ -121,7 +127,9 @@ def frame_of(panel: Panel, wide: float = 660.0, tall: float = 250.0) -> PanelFra
 def meet(one: Label, other: Label) -> bool:
     """Whether two labels share a place."""
     apart = one.left >= other.right or other.left >= one.right
-    return not (apart or one.top >= other.top + PAPER_SIZES.line or other.top >= one.top + PAPER_SIZES.line)
+    return not (
+        apart or one.top >= other.top + PAPER_SIZES.line or other.top >= one.top + PAPER_SIZES.line
+    )
 
 
 def covered(frame: PanelFrame, label: Label) -> bool:
@@ -129,7 +137,10 @@ def covered(frame: PanelFrame, label: Label) -> bool:
     for curve in frame.panel.curves:
         for piece in curve.pieces():
             z = frame.place(*piece)
-            x, y = (np.interp(np.linspace(0, 1, 2000), np.linspace(0, 1, len(z)), one) for one in (z.real, z.imag))
+            x, y = (
+                np.interp(np.linspace(0, 1, 2000), np.linspace(0, 1, len(z)), one)
+                for one in (z.real, z.imag)
+            )
             inside = (x > label.left + 1) & (x < label.right - 1)
             inside &= (y > label.top + 1) & (y < label.top + PAPER_SIZES.line - 1)
             if inside.any():
@@ -140,16 +151,22 @@ def covered(frame: PanelFrame, label: Label) -> bool:
 LABELLED = ["waterworks", "gas-engine", "marine-diesel", "radial-three", "diesel-trace"]
 
 
-@pytest.mark.parametrize("names", [LABELLED, pytest.param(list(CONFIGS), marks=pytest.mark.slow)], ids=["few", "all"])
+@pytest.mark.parametrize(
+    "names", [LABELLED, pytest.param(list(CONFIGS), marks=pytest.mark.slow)], ids=["few", "all"]
+)
 def test_labels_are_clear_of_each_other_and_of_curves(names: list[str]) -> None:
     """Where no ground is free nearby a label may be on a curve: one of a hundred."""
     labels, on_curves = 0, 0
-    for picture in (picture for name in names for id in ids_of(name) for picture in drawn(name, id)):
+    for picture in (
+        picture for name in names for id in ids_of(name) for picture in drawn(name, id)
+    ):
         for panel in (one for one in picture.panels if not one.plain):
             frame = frame_of(panel, {1: 660.0, 2: 293.0, 3: 170.0}[picture.across])
             found = frame.labels(named=False)
             assert not any(meet(one, other) for one, other in combinations(found, 2))
-            named = [mark for mark in panel.marks if mark.figure.name.symbol]  # angles are where there is room
+            named = [
+                mark for mark in panel.marks if mark.figure.name.symbol
+            ]  # angles are where there is room
             assert len(found) >= min(len(named), 12)
             labels += len(found)
             on_curves += sum(covered(frame, label) for label in found)

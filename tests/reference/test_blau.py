@@ -21,11 +21,15 @@ def acceleration(degrees, lam):
     return formulas.first_order_acceleration(angle.sin, angle.cos, lam)
 
 
-@pytest.mark.parametrize(("ratio", "printed", "unit", "way"), [(5, 79 + 20 / 60, 5 / 60, 0.911), (4, 77.0, 1.0, 0.895)])
+@pytest.mark.parametrize(
+    ("ratio", "printed", "unit", "way"), [(5, 79 + 20 / 60, 5 / 60, 0.911), (4, 77.0, 1.0, 0.895)]
+)
 def test_example_33_in_table_and_motion(ratio, printed, unit, way):
     """cos α = (−5 + √33)/4 is 0.18614, α = 79°16′, printed 79°20′ from the cosine rounded to 0.186."""
     root = math.degrees(math.acos((math.sqrt(ratio**2 + 8) - ratio) / 4))
-    columns = {column.id: column for column in zusammenstellung((ratio,)).whole.place_tables[0].columns}
+    columns = {
+        column.id: column for column in zusammenstellung((ratio,)).whole.place_tables[0].columns
+    }
     exact, first_order = columns["phi_b_zero"], columns["phi_b_zero_book"]
     assert columns["x_b_zero_book"].values[0] == pytest.approx(way, abs=0.002)
     motion = kurbel.solve(f"{{crank: 1 m, rod_ratio: {ratio}, speed: 1 Hz}}").cylinders[0].motion
@@ -36,7 +40,10 @@ def test_example_33_in_table_and_motion(ratio, printed, unit, way):
     assert 0 < root - exact.values[0] < 0.3
     assert acceleration(root, 1 / ratio) == pytest.approx(0, abs=1e-15)
     assert displacement(root, 1 / ratio) == pytest.approx(way, abs=0.002)
-    assert kurbel.solve("{crank: 1 m, rod: infinite, speed: 1 Hz}").cylinders[0].motion.phi_b_zero_book is None
+    assert (
+        kurbel.solve("{crank: 1 m, rod: infinite, speed: 1 Hz}").cylinders[0].motion.phi_b_zero_book
+        is None
+    )
 
 
 @pytest.mark.parametrize(

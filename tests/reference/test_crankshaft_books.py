@@ -19,7 +19,13 @@ class TestOelUndGasmaschinen:
     P, A_S = 300e3, 20e3
 
     def web(self) -> tuple[float, ...]:
-        sized = shaft(b=0.4, flywheel_mass=1.0, flywheel_position=0.2, allowable_bending=60e6, allowable_torsion=40e6)
+        sized = shaft(
+            b=0.4,
+            flywheel_mass=1.0,
+            flywheel_position=0.2,
+            allowable_bending=60e6,
+            allowable_torsion=40e6,
+        )
         weight = self.A_S * 0.8 / 0.2  # so that A_s = G f/(a + b) is 20 kN
         body = FreeBody(sized, 0.3, np.array([self.P + 0j]), np.array([-1j * weight]))
         face, side = place_at(body, "web_B", "wide face"), place_at(body, "web_B", "narrow face")
@@ -38,7 +44,9 @@ class TestOelUndGasmaschinen:
         compression, torsion, by_weight, in_plane, combined, narrow = self.web()
         assert compression == pytest.approx(0.5 * self.P / (t * w), rel=1e-13)
         assert torsion == pytest.approx(4.5 * self.A_S * (a + e) / (t * t * w), rel=1e-13)
-        assert by_weight == pytest.approx(self.A_S * r / (t * w * w / 6), rel=1e-13)  # lever to the axis of the pin
+        assert by_weight == pytest.approx(
+            self.A_S * r / (t * w * w / 6), rel=1e-13
+        )  # lever to the axis of the pin
         assert in_plane == pytest.approx(self.P / 2 * (a - e) / (t * t * w / 6), rel=1e-13)
         sigma, alpha = compression + in_plane, 60 / (1.3 * 40)
         bach = 0.35 * sigma + 0.65 * math.sqrt(sigma**2 + 4 * (alpha * torsion) ** 2)

@@ -39,18 +39,26 @@ def test_guide_force_while_driving_and_while_driven() -> None:
     pushed, pulled = Indicator(constant_pressure(6e5)), Indicator(None, constant_pressure(6e5))
     for indicator, sign in ((pushed, +1), (pulled, -1)):
         piston = Piston(0.42, indicator=indicator)
-        state = one_cylinder(SliderCrank(0.3, 1.8), pistons=(piston,), friction=Friction(f)).at([90])
+        state = one_cylinder(SliderCrank(0.3, 1.8), pistons=(piston,), friction=Friction(f)).at(
+            [90]
+        )
         force = sign * 6e5 * piston.head_area
-        assert state.N[0] == pytest.approx(force * lam_sin / (cos_psi + sign * f * lam_sin), rel=1e-14)
+        assert state.N[0] == pytest.approx(
+            force * lam_sin / (cos_psi + sign * f * lam_sin), rel=1e-14
+        )
         assert state.S[0] * lam_sin == pytest.approx(state.N[0], rel=1e-14)  # D 2
-        assert state.S[0] * cos_psi + sign * f * state.N[0] == pytest.approx(force, rel=1e-14)  # D 1
+        assert state.S[0] * cos_psi + sign * f * state.N[0] == pytest.approx(
+            force, rel=1e-14
+        )  # D 1
         assert state.F_friction[0] < 0
 
 
 def test_rings() -> None:
     """Friction D π h p_r f, share 4 h p_r f/(D p) of the piston force (Kolbenreibung)."""
     rings = Rings(1, 0.05, 0.4e5, 0.1)
-    forces = one_cylinder(SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(None, rings))
+    forces = one_cylinder(
+        SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(None, rings)
+    )
     assert forces.drive.ring_force == pytest.approx(math.pi * 0.42 * 0.05 * 0.4e5 * 0.1, rel=1e-15)
     assert forces.loss_rings == pytest.approx(4 * 0.05 * 0.4e5 * 0.1 / (0.42 * 6e5), rel=1e-14)
 
@@ -60,7 +68,8 @@ def test_a_driven_machine_locks_where_f_tan_psi_reaches_one() -> None:
     piston = Piston(
         0.2,
         indicator=Indicator(
-            Constant.from_keys(expansion=0.0, compression=5e5), Constant.from_keys(expansion=0.0, compression=5e5)
+            Constant.from_keys(expansion=0.0, compression=5e5),
+            Constant.from_keys(expansion=0.0, compression=5e5),
         ),
     )  # takes work
     free = one_cylinder(SliderCrank(0.89, 1.0), pistons=(piston,), friction=Friction(0.5))

@@ -22,7 +22,10 @@ indicator: {head_end: {unit: at, expansion: [[0, 9,5], [1, 2.2]]}, crank_end: mi
 """A file whose check names no machine."""
 MACHINES = [
     *(("motion", name) for name in ("shaper", "offset-engine")),
-    *(("forces", name) for name in ("waterworks", "diesel-trace", "coupled-axle", "waterworks-two-cranks")),
+    *(
+        ("forces", name)
+        for name in ("waterworks", "diesel-trace", "coupled-axle", "waterworks-two-cranks")
+    ),
     *(("flywheel", name) for name in ("punch", "coupled-blower")),
     *(("check", name) for name in ("waterworks", "compressor")),
     ("stress", "gas-engine"),
@@ -33,12 +36,19 @@ MACHINES = [
     ("delivery", "compressor-two-stage"),
     ("delivery", "triplex-pump"),
 ]
-MACHINES += [(one.word, "waterworks") for one in REPORTS if one.word not in dict(MACHINES)]
+MACHINES += [(report.word, "waterworks") for report in REPORTS if report.word not in dict(MACHINES)]
 ANSWERS = [
     ["table", "--compare"],
     ["friction", "--incline", "30", "--coefficient", "0.1"],
     *([command, str(CONFIGS[name])] for command, name in MACHINES),
-    ["check", str(CONFIGS["waterworks"]), "--set", "limits.c_max=1 m/s", "--set", "expect.b_max=2 m/s2 ± 1 %"],
+    [
+        "check",
+        str(CONFIGS["waterworks"]),
+        "--set",
+        "limits.c_max=1 m/s",
+        "--set",
+        "expect.b_max=2 m/s2 ± 1 %",
+    ],
     ["forces", str(CONFIGS["waterworks"]), "--uncertainty", "bore=0.1mm"],
 ]
 

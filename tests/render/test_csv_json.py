@@ -13,11 +13,16 @@ from kurbel.render.formats import render
 from kurbel.tables.tables import Column, Part, PlaceTable, Report
 from render.sample_report import ONE, PHI, texts
 
-VALUES = st.lists(st.none() | st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=6)
+VALUES = st.lists(
+    st.none() | st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=6
+)
 
 
 def report_of(values: list[float | None], name: str = "one") -> Report:
-    columns = (PHI._replace(values=tuple(range(len(values)))), Column("x", "x", "x", "m", tuple(values)))
+    columns = (
+        PHI._replace(values=tuple(range(len(values)))),
+        Column("x", "x", "x", "m", tuple(values)),
+    )
     return Report("t", "forces", "m", "cylinders", (Part(name, columns),))
 
 
@@ -40,7 +45,9 @@ def test_json_reads_back_exactly(values: list[float | None]) -> None:
     assert content["cylinders"][0]["columns"][1]["values"] == values
 
 
-@pytest.mark.parametrize("name", ["=2+5", "+2", "-2+3", "@SUM(A1:A9)", '=HYPERLINK("http://a.b","c")', "＝2+5"])
+@pytest.mark.parametrize(
+    "name", ["=2+5", "+2", "-2+3", "@SUM(A1:A9)", '=HYPERLINK("http://a.b","c")', "＝2+5"]
+)
 def test_no_name_is_a_formula_to_a_spreadsheet(name: str) -> None:
     part = Part(name, (PHI._replace(values=(0.0,)), Column("x", "x", "x", "m", (-2.0,))))
     places = PlaceTable("t", "t", ("part",), ((name,),), (Column("s", "s", "s", "Pa", (-3.0,)),))
@@ -65,5 +72,9 @@ def test_json_never_holds_nan() -> None:
 def test_markdown_tables_keep_their_columns(names: list[str]) -> None:
     symbols = tuple(column._replace(symbol=names[0]) for column in ONE.parts[0].columns)
     report = ONE._replace(title=names[1], parts=(ONE.parts[0]._replace(columns=symbols),))
-    lines = [line for line in render(report, Look("markdown")).split("\n") if line.startswith("| ")][:15]
-    assert {line.replace("\\\\", "").replace("\\|", "").count("|") for line in lines} == {len(symbols) + 1}
+    lines = [
+        line for line in render(report, Look("markdown")).split("\n") if line.startswith("| ")
+    ][:15]
+    assert {line.replace("\\\\", "").replace("\\|", "").count("|") for line in lines} == {
+        len(symbols) + 1
+    }

@@ -20,7 +20,10 @@ PAGES = {
     "table-compare-comma.txt": (zusammenstellung(compare=True), Look(comma=True)),
     "table-rows.txt": (zusammenstellung((4.5,), ("b", "c", "psi", "N")), Look(layout="rows")),
     "table-80.txt": (zusammenstellung(), Look(width=80)),
-    "table-ascii.txt": (zusammenstellung(formula="first-order", rows=("b", "c", "x", "psi")), Look(encoding="ascii")),
+    "table-ascii.txt": (
+        zusammenstellung(formula="first-order", rows=("b", "c", "x", "psi")),
+        Look(encoding="ascii"),
+    ),
     "table.md": (zusammenstellung((5.0,)), Look("markdown")),
     "forces.txt": (ONE, Look()),
     "forces-cylinders.txt": (REPORT, Look()),
@@ -42,7 +45,8 @@ def test_golden(name: str, kept: Callable[[Path, str], str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("count", "sizes"), [(0, [0]), (1, [1]), (9, [9]), (10, [10]), (11, [9, 2]), (19, [9, 10]), (37, [9, 9, 9, 10])]
+    ("count", "sizes"),
+    [(0, [0]), (1, [1]), (9, [9]), (10, [10]), (11, [9, 2]), (19, [9, 10]), (37, [9, 9, 9, 10])],
 )
 def test_blocks_as_in_the_book(count: int, sizes: list[int]) -> None:
     assert book_sizes(count) == sizes
@@ -72,7 +76,10 @@ def test_no_line_ends_between_a_number_and_its_unit(columns: int) -> None:
     "look", [Look(), Look(layout="rows"), *map(Look, ("markdown", "csv", "json", "html", "latex"))]
 )
 def test_every_character_can_be_written(look: Look) -> None:
-    compared, simple = zusammenstellung(compare=True), zusammenstellung(formula="first-order", rows=("c", "x"))
+    compared, simple = (
+        zusammenstellung(compare=True),
+        zusammenstellung(formula="first-order", rows=("c", "x")),
+    )
     for encoding in ("ascii", "cp1252", "cp850", "latin-1", "utf-8"):
         for report in (REPORT, ONE, compared, simple):
             text = render(report, look._replace(encoding=encoding))
@@ -83,4 +90,7 @@ def test_every_character_can_be_written(look: Look) -> None:
 def test_names_cannot_steer_the_terminal(name: str) -> None:
     report = ONE._replace(title=name, parts=(ONE.parts[0]._replace(name=name),) * 2)
     text = render(report)
-    assert all(character == "\n" or (ord(character) >= 32 and not 127 <= ord(character) < 160) for character in text)
+    assert all(
+        character == "\n" or (ord(character) >= 32 and not 127 <= ord(character) < 160)
+        for character in text
+    )

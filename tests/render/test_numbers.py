@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.render import Look
-from kurbel.render.text import angle_scale, cell, head_scale, rounded, scale_of, single
+from kurbel.render.text import angle_scale, cell, digit_scale, head_scale, rounded, single
 from kurbel.render.text_tables import place_table
 from kurbel.tables.tables import Column, PlaceTable
 
@@ -17,9 +17,11 @@ ROW = st.lists(FINITE, min_size=1, max_size=8)
 
 @given(ROW, st.integers(1, 17))
 def test_a_cell_is_within_half_a_unit_of_its_last_decimal(row: list[float], digits: int) -> None:
-    scale = scale_of(row, digits)
+    scale = digit_scale(row, digits)
     for value in row:
-        shown = float(cell(value, scale)) * 10.0**scale.exponent if abs(scale.exponent) < 300 else None
+        shown = (
+            float(cell(value, scale)) * 10.0**scale.exponent if abs(scale.exponent) < 300 else None
+        )
         if shown is not None:
             unit = 10.0 ** (scale.exponent - scale.decimals)
             assert abs(shown - value) <= 0.5 * unit * (1 + 1e-6) + 4 * math.ulp(value)
@@ -48,7 +50,7 @@ def test_no_negative_zero(value: float, decimals: int) -> None:
     ],
 )
 def test_rows_as_an_engineer_writes_them(row: list[float | None], cells: list[str]) -> None:
-    assert [cell(value, scale_of(row)) for value in row] == cells
+    assert [cell(value, digit_scale(row)) for value in row] == cells
 
 
 @pytest.mark.parametrize(
@@ -102,7 +104,9 @@ def rows(*values: float | None) -> PlaceTable:
         ((0.0, 0.0), ["0", "0"]),
     ],
 )
-def test_no_value_of_a_table_of_places_is_printed_as_zero(values: tuple[float | None, ...], cells: list[str]) -> None:
+def test_no_value_of_a_table_of_places_is_printed_as_zero(
+    values: tuple[float | None, ...], cells: list[str]
+) -> None:
     _, torque, reference = place_table(rows(*values), Look()).columns
     assert torque.cells == cells
     assert set(reference.cells) == {"64.07"}

@@ -54,11 +54,17 @@ class TestWhere:
         with mp.workdps(30):
 
             def x(phi: Any) -> Any:
-                return (1 - mp.cos(phi) + 5 * (1 - mp.sqrt(1 - mp.sin(phi) ** 2 / 25))) * mp.mpf("0.4")
+                return (1 - mp.cos(phi) + 5 * (1 - mp.sqrt(1 - mp.sin(phi) ** 2 / 25))) * mp.mpf(
+                    "0.4"
+                )
 
             phi = mp.findroot(lambda p: mp.diff(x, p, 2) - mp.mpf("0.4") * 6 / 5 / 6, 1.2)
             omega = 2 * mp.pi
-            expected = {"x": x(phi), "c": mp.diff(x, phi) * omega, "b": mp.diff(x, phi, 2) * omega**2}
+            expected = {
+                "x": x(phi),
+                "c": mp.diff(x, phi) * omega,
+                "b": mp.diff(x, phi, 2) * omega**2,
+            }
             degrees = float(mp.degrees(phi))
         assert found["phi"] == pytest.approx([degrees, 360 - degrees], rel=1e-14)
         for name, value in expected.items():
@@ -80,7 +86,9 @@ class TestOverTheStroke:
         assert np.all(np.diff(found["phi"]) > 0)
 
     def test_a_cycle_of_two_turns_has_four_strokes(self) -> None:
-        found = json_of("forces", "--over", "x", "--step", "50", text=STRAIGHT + "cycle: four-stroke\n")
+        found = json_of(
+            "forces", "--over", "x", "--step", "50", text=STRAIGHT + "cycle: four-stroke\n"
+        )
         assert found["z"] == pytest.approx([0, 0.5, 1, 0.5, 0, 0.5, 1, 0.5, 0], abs=1e-15)
         assert found["phi"][-1] == 720.0
 
@@ -91,7 +99,9 @@ class TestCompare:
         found = json_of("motion", "--compare", "--angles", "60")
         R, v = 0.4, 0.4 * 2 * np.pi
         assert found["x_book"] == pytest.approx([0.575 * R], rel=1e-14)
-        assert found["c_book"] == pytest.approx([v * (np.sqrt(0.75) + 0.1 * np.sqrt(0.75))], rel=1e-14)
+        assert found["c_book"] == pytest.approx(
+            [v * (np.sqrt(0.75) + 0.1 * np.sqrt(0.75))], rel=1e-14
+        )
         assert found["b_book"] == pytest.approx([0.4 * v**2 / R], rel=1e-14)
         assert list(found)[1:4] == ["psi", "x", "x_book"]
 

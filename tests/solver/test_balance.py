@@ -56,7 +56,9 @@ cylinders:
 # against forty digits
 
 
-def exact_force(lam: Any, e: Any, bank: float, late: float, masses: tuple[float, float], degrees: float) -> Any:
+def exact_force(
+    lam: Any, e: Any, bank: float, late: float, masses: tuple[float, float], degrees: float
+) -> Any:
     """Return F/(R ω²) in kg: minus the second derivatives of where the masses stand, by forty digits."""
 
     def place(phi: Any) -> Any:
@@ -68,7 +70,9 @@ def exact_force(lam: Any, e: Any, bank: float, late: float, masses: tuple[float,
     return -mp.diff(place, mp.radians(mp.mpf(degrees)), 2)
 
 
-@pytest.mark.parametrize(("ratio", "offset"), [(20.0, 0.0), (4.0, 0.0), (3.0, 0.2), (1 / 0.95, 0.0), (1.25, 0.1)])
+@pytest.mark.parametrize(
+    ("ratio", "offset"), [(20.0, 0.0), (4.0, 0.0), (3.0, 0.2), (1 / 0.95, 0.0), (1.25, 0.1)]
+)
 def test_forces_and_moments_against_forty_digits(ratio: float, offset: float) -> None:
     lines = ((0.0, 0.0, -0.1), (60.0, 17.0, 0.05), (-113.0, 240.0, 0.3))
     cylinders = [
@@ -81,11 +85,16 @@ def test_forces_and_moments_against_forty_digits(ratio: float, offset: float) ->
     with mp.workdps(40):
         lam = 1 / mp.mpf(ratio)
         each = [
-            [exact_force(lam, mp.mpf(offset), bank, late, (2.0, mp.mpf(0.7)), one) for bank, late, _ in lines]
-            for one in ANGLES
+            [
+                exact_force(lam, mp.mpf(offset), bank, late, (2.0, mp.mpf(0.7)), angle)
+                for bank, late, _ in lines
+            ]
+            for angle in ANGLES
         ]
         force = np.array([complex(sum(row)) for row in each])
-        moment = np.array([complex(sum((z - 0.1) * one for (_, _, z), one in zip(lines, row))) for row in each])
+        moment = np.array(
+            [complex(sum((z - 0.1) * one for (_, _, z), one in zip(lines, row))) for row in each]
+        )
     unit = 2.0 * OMEGA**2
     assert np.abs((columns.F_x + 1j * columns.F_y) / unit - force / 2).max() < 1e-13
     assert np.abs((columns.M_x + 1j * columns.M_y) / unit - moment / 2).max() < 1e-13
@@ -104,7 +113,9 @@ def test_orders_of_one_cylinder(ratio: float, series: dict[int, float]) -> None:
     assert abs(force.of(1)[0] / 0.1 - 0.5) < 1e-16
     for order, figure in series.items():
         assert force.of(order)[0] == force.of(-order)[0].conjugate()
-        assert force.of(order)[0].real / 0.05 == pytest.approx(figure, rel=1e-7 if order == 6 else 1e-11)
+        assert force.of(order)[0].real / 0.05 == pytest.approx(
+            figure, rel=1e-7 if order == 6 else 1e-11
+        )
     assert not force.waves[(force.numbers > 1) & (force.numbers % 2 == 1)].any()
 
 
@@ -122,7 +133,9 @@ cylinders:
 """
 
 
-@pytest.mark.parametrize("rod", ["{mass: 1.5 kg, center_of_gravity: 60 mm, inertia: 0.008 kg m2}", "{mass: 1.5 kg}"])
+@pytest.mark.parametrize(
+    "rod", ["{mass: 1.5 kg, center_of_gravity: 60 mm, inertia: 0.008 kg m2}", "{mass: 1.5 kg}"]
+)
 def test_bearing_guide_and_gas_make_up_the_free_force_and_the_rolling_moment(rod: str) -> None:
     case = Case(loads(INSIDE.replace("ROD", rod)))
     (forces,), found = case.cylinders, case.balance.at(ANGLES)
@@ -132,9 +145,13 @@ def test_bearing_guide_and_gas_make_up_the_free_force_and_the_rolling_moment(rod
     rotating = 0.9 if drive.rod else 0.9 + 0.75  # D of an exact rod has its pull already
     bearing = (-inside.D + 1j * inside.T) * throw + rotating * 0.05 * OMEGA**2 * throw
     force = bearing - 1j * inside.N + inside.P_gas
-    assert_allclose(found.F_x + 1j * found.F_y, force, rtol=0, atol=1e-13 * np.abs(inside.P_gas).max())
+    assert_allclose(
+        found.F_x + 1j * found.F_y, force, rtol=0, atol=1e-13 * np.abs(inside.P_gas).max()
+    )
     # N presses on the guide where the crosshead is, the gas on the cover beside the axis of the shaft
-    far = 0.05 * np.cos(np.radians(ANGLES)) + np.sqrt(0.17**2 - (0.05 * np.sin(np.radians(ANGLES)) - 0.012) ** 2)
+    far = 0.05 * np.cos(np.radians(ANGLES)) + np.sqrt(
+        0.17**2 - (0.05 * np.sin(np.radians(ANGLES)) - 0.012) ** 2
+    )
     roll = -inside.N * far - 0.012 * inside.P_gas
     assert_allclose(found.M_roll, roll, rtol=0, atol=1e-12 * np.abs(roll).max())
     assert case.balance.M_roll_max.value >= roll.max()
@@ -163,9 +180,7 @@ def test_what_cancels_is_exactly_zero() -> None:
 )
 def test_forces_by_symmetry(banks: tuple[int, ...], late: tuple[int, ...]) -> None:
     """A radial engine of k cylinders keeps k/2 m R ω² of order 1, turning with the crank, none against it."""
-    cylinder = (
-        "{name: %s, crank: 50 mm, rod_ratio: 4, masses: {other: 2 kg}, bank_angle: %s deg, crank_position: %s deg}"
-    )
+    cylinder = "{name: %s, crank: 50 mm, rod_ratio: 4, masses: {other: 2 kg}, bank_angle: %s deg, crank_position: %s deg}"
     several = ", ".join(cylinder % (k, bank, one) for k, (bank, one) in enumerate(zip(banks, late)))
     force = balance_of(f"{{speed: 600 rpm, cylinders: [{several}]}}").free.force
     if len(banks) == 2:
@@ -181,7 +196,9 @@ def test_ninety_degrees_with_a_counterweight_of_one_mass() -> None:
     found = balance_of(V90, "counterweights=[{product: 0.1 kg m}]")
     force = found.free.force
     assert (force.of(1)[0], force.of(-1)[0]) == (0, 0)
-    assert abs(force.of(2)[0]) + abs(force.of(-2)[0]) == pytest.approx(math.sqrt(2) * 0.1 * 0.254025042307, rel=1e-11)
+    assert abs(force.of(2)[0]) + abs(force.of(-2)[0]) == pytest.approx(
+        math.sqrt(2) * 0.1 * 0.254025042307, rel=1e-11
+    )
     assert found.F_free_max.value == pytest.approx(found.F_free_best.value, rel=1e-13)
 
 
@@ -201,15 +218,21 @@ def test_the_best_share_of_one_cylinder() -> None:
         return mp.sqrt(square(mp.findroot(lambda phi: mp.diff(square, phi), mp.mpf("1.76"))))
 
     with mp.workdps(30):
-        share = mp.findroot(lambda c: beside(c) - (mp.mpf("1.25") - c), (0.589, 0.591), solver="secant")
+        share = mp.findroot(
+            lambda c: beside(c) - (mp.mpf("1.25") - c), (0.589, 0.591), solver="secant"
+        )
     assert found.share_best == pytest.approx(float(share), abs=1e-12)
     assert found.F_free_best.value / unit == pytest.approx(1.25 - float(share), abs=1e-12)
-    assert (found.counterweight_least, found.counterweight_least_angle) == pytest.approx((0.1 * float(share), 180.0))
+    assert (found.counterweight_least, found.counterweight_least_angle) == pytest.approx(
+        (0.1 * float(share), 180.0)
+    )
 
 
 def test_no_counterweight_has_no_direction() -> None:
     """The largest forces, at 90 and 270 deg, are opposite in the frame of the crank: no weight lessens both."""
-    opposite = V90.replace("bank_angle: 90", "bank_angle: -45").replace("position: 90", "position: 180")
+    opposite = V90.replace("bank_angle: 90", "bank_angle: -45").replace(
+        "position: 90", "position: 180"
+    )
     found = balance_of(opposite.replace("rod_ratio: 4", "rod_ratio: 1.55"))
     assert (found.counterweight_least, found.counterweight_least_angle) == (0, None)
 
@@ -224,9 +247,9 @@ def test_what_a_share_leaves(share: str, left: float) -> None:
 def test_weights_in_two_planes_take_away_all_that_turns_with_the_crank() -> None:
     found = balance_of(TWO_CRANKS)
     weights = ", ".join(
-        f"{{product: {abs(one.product)!r} kg m, angle: {math.degrees(np.angle(one.product))!r} deg, "
-        f"axial_position: {one.place} m}}"
-        for one in found.best_in_planes
+        f"{{product: {abs(best_in_plane.product)!r} kg m, angle: {math.degrees(np.angle(best_in_plane.product))!r} deg, "
+        f"axial_position: {best_in_plane.place} m}}"
+        for best_in_plane in found.best_in_planes
     )
     free = balance_of(TWO_CRANKS, f"counterweights=[{weights}]").free
     assert abs(free.force.of(1)[0]) < 1e-12 * abs(found.bare.force.of(1)[0])
@@ -236,7 +259,7 @@ def test_weights_in_two_planes_take_away_all_that_turns_with_the_crank() -> None
 def test_lanchester_shafts() -> None:
     """Four in line: two shafts at twice the speed in the middle, one each way, leave order 4."""
     found = balance_of(FOUR)
-    assert [(one.order, one.place) for one in found.best_shafts] == [
+    assert [(best_shaft.order, best_shaft.place) for best_shaft in found.best_shafts] == [
         (2, pytest.approx(0.15)),
         (-2, pytest.approx(0.15)),
     ]
@@ -254,7 +277,9 @@ def test_lanchester_shafts() -> None:
 
 def first_order_left(text: str, weights: list[str], shafts: list[str]) -> list[float]:
     """What these counterweights and shafts leave of order 1, with the crank and against it: forces and moments."""
-    free = balance_of(text, f"counterweights=[{', '.join(weights)}]", f"balance_shafts=[{', '.join(shafts)}]").free
+    free = balance_of(
+        text, f"counterweights=[{', '.join(weights)}]", f"balance_shafts=[{', '.join(shafts)}]"
+    ).free
     curves = [free.force] if free.moment is None else [free.force, free.moment]
     return [abs(complex(curve.of(order)[0])) for curve in curves for order in (1, -1)]
 
@@ -269,10 +294,12 @@ def written(one: Any, more: str = "") -> str:
 AGAINST = ", order: 1, sense: against"
 
 
-def test_half_a_counterweight_and_a_shaft_against_the_crank_leave_no_first_order_of_one_cylinder() -> None:
+def test_half_a_counterweight_and_a_shaft_against_the_crank_leave_no_first_order_of_one_cylinder() -> (
+    None
+):
     """m R cos φ is ½ m R with the crank and ½ m R against it: each is taken away by a weight that turns as it does."""
     found = balance_of(single())
-    (shaft,) = (one for one in found.best_shafts if one.order == -1)
+    (shaft,) = (best_shaft for best_shaft in found.best_shafts if best_shaft.order == -1)
     assert (abs(shaft.product), shaft.product.real < 0) == (pytest.approx(0.5 * 2 * 0.05), True)
     left = first_order_left(single(), ["{product: 0.05 kg m}"], [written(shaft, AGAINST)])
     assert left == pytest.approx([0, 0], abs=1e-16)
@@ -283,20 +310,26 @@ def test_half_a_counterweight_and_a_shaft_against_the_crank_leave_no_first_order
     [(in_line(3, "1-3-2"), [0, 240, 120]), (in_line(5, "1-2-4-5-3"), [0, 144, 216, 288, 72])],
     ids=["three", "five"],
 )
-def test_a_shaft_with_a_couple_takes_away_the_first_order_moment_of_odd_engines(text: str, behind: list[int]) -> None:
+def test_a_shaft_with_a_couple_takes_away_the_first_order_moment_of_odd_engines(
+    text: str, behind: list[int]
+) -> None:
     """Each cylinder has ½ m R with its crank and ½ m R against it, whose moments about the middle are added up."""
     found, half = balance_of(text), 0.5 * 2 * 0.05
     span = 0.1 * (len(behind) - 1)
     places = [0.1 * k - span / 2 for k in range(len(behind))]
-    couple = half * abs(sum(z * np.exp(1j * math.radians(angle)) for z, angle in zip(places, behind)))
-    shaft = [one for one in found.best_shafts if one.order == -1]
+    couple = half * abs(
+        sum(z * np.exp(1j * math.radians(angle)) for z, angle in zip(places, behind))
+    )
+    shaft = [best_shaft for best_shaft in found.best_shafts if best_shaft.order == -1]
     assert [one.place for one in shaft] == pytest.approx([0, span])
     assert [abs(one.product) for one in shaft] == pytest.approx([couple / span] * 2, rel=1e-12)
     assert abs(sum(one.product for one in shaft)) < 1e-14
     if len(behind) == 3:  # √3 m R D of Bloch & Hoefner p. 91, half of it each way, on an arm of 2 D
         assert couple / span == pytest.approx(math.sqrt(3) / 4 * 2 * 0.05)
 
-    left = first_order_left(text, [*map(written, found.best_in_planes)], [written(one, AGAINST) for one in shaft])
+    left = first_order_left(
+        text, [*map(written, found.best_in_planes)], [written(one, AGAINST) for one in shaft]
+    )
     assert left == pytest.approx([0] * 4, abs=1e-12 * couple)
 
 
@@ -338,9 +371,13 @@ def test_the_whole_counterweight_in_each_wheel() -> None:
 def test_the_book_beside_the_exact() -> None:
     found = balance_of(FOUR)
     assert longest(found.book.force)[0] == pytest.approx(4 * 0.1 * 0.25, rel=1e-14)
-    assert_allclose(found.at(ANGLES).F_x_book, 0.1 * OMEGA**2 * np.cos(np.radians(2 * ANGLES)), atol=1e-10)
+    assert_allclose(
+        found.at(ANGLES).F_x_book, 0.1 * OMEGA**2 * np.cos(np.radians(2 * ANGLES)), atol=1e-10
+    )
     assert balance_of(single(4, ", offset: 10 mm")).book is None
-    yoke = balance_of("{speed: 600 rpm, mechanism: scotch-yoke, crank: 50 mm, masses: {reciprocating: 2 kg}}")
+    yoke = balance_of(
+        "{speed: 600 rpm, mechanism: scotch-yoke, crank: 50 mm, masses: {reciprocating: 2 kg}}"
+    )
     assert_allclose(yoke.book.force.of(1), yoke.free.force.of(1))
 
 

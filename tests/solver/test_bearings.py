@@ -26,15 +26,17 @@ EACH = """crank: 45 mm
              connecting_rod: {mass: 2 kg, center_of_gravity: 0.1 m, inertia: 7e-3 kg m2}}
 """
 HEAD = "speed: 1800 rpm\ncycle: four-stroke\n" + SHAFT
-IN_LINE = HEAD + f"cylinders:\n  count: 4\n  firing_order: 1-3-4-2\n  spacing: 110 mm\n  each:\n    {EACH}"
+IN_LINE = (
+    HEAD
+    + f"cylinders:\n  count: 4\n  firing_order: 1-3-4-2\n  spacing: 110 mm\n  each:\n    {EACH}"
+)
 VEE = HEAD + f"cylinders:\n  count: 2\n  bank_angles: [0 deg, 90 deg]\n  each:\n    {EACH}"
 OVERHUNG = (
-    HEAD + f"cylinders:\n  - {EACH}    axial_position: 0 mm\n  - like: cylinder 1\n    crank_position: 90 deg\n"
+    HEAD
+    + f"cylinders:\n  - {EACH}    axial_position: 0 mm\n  - like: cylinder 1\n    crank_position: 90 deg\n"
     "    axial_position: 500 mm\n"
 ).replace("b: 50 mm", "b: 400 mm, overhung: true")
-COUNTERWEIGHTS = (
-    "counterweights: [{product: 0.03 kg m, angle: 170 deg, axial_position: 20 mm}, {mass: 1 kg, radius: 40 mm}]\n"
-)
+COUNTERWEIGHTS = "counterweights: [{product: 0.03 kg m, angle: 170 deg, axial_position: 20 mm}, {mass: 1 kg, radius: 40 mm}]\n"
 MACHINES = {
     "one": HEAD + EACH.replace("\n    ", "\n"),
     "one, counterweights": HEAD + EACH.replace("\n    ", "\n") + COUNTERWEIGHTS,
@@ -45,7 +47,9 @@ MACHINES = {
     "two overhung": OVERHUNG,
     "offset": HEAD + EACH.replace("\n    ", "\n") + "offset: 12 mm\n",
     "rod by its share": HEAD
-    + EACH.replace("\n    ", "\n").replace("center_of_gravity: 0.1 m, inertia: 7e-3 kg m2", "share: 0.4"),
+    + EACH.replace("\n    ", "\n").replace(
+        "center_of_gravity: 0.1 m, inertia: 7e-3 kg m2", "share: 0.4"
+    ),
 }
 
 
@@ -64,10 +68,13 @@ def counterweights(machine: Machine) -> complex:
     if isinstance(given, tuple):
         return sum(one.product * cmath.exp(1j * math.radians(one.angle)) for one in given)
     return -sum(
-        (one.masses.at_pin(one.mechanism.rod_length) + given.share * one.masses.at_crosshead(one.mechanism.rod_length))
-        * one.mechanism.crank
-        * cmath.exp(1j * math.radians(one.bank_angle - one.crank_position))
-        for one in machine.cylinders
+        (
+            cylinder.masses.at_pin(cylinder.mechanism.rod_length)
+            + given.share * cylinder.masses.at_crosshead(cylinder.mechanism.rod_length)
+        )
+        * cylinder.mechanism.crank
+        * cmath.exp(1j * math.radians(cylinder.bank_angle - cylinder.crank_position))
+        for cylinder in machine.cylinders
     )
 
 
@@ -102,7 +109,8 @@ def test_a_bearing_between_two_throws_carries_both() -> None:
     turn = np.array([0.0, 540.0, 180.0, 360.0])  # crank positions of 1-3-4-2
     fixed = [in_engine(A, np.mod(phi - turn[0], 720.0))]
     fixed += [
-        in_engine(B, np.mod(phi - turn[k], 720.0)) + in_engine(A, np.mod(phi - turn[k + 1], 720.0)) for k in range(3)
+        in_engine(B, np.mod(phi - turn[k], 720.0)) + in_engine(A, np.mod(phi - turn[k + 1], 720.0))
+        for k in range(3)
     ]
     fixed += [in_engine(B, np.mod(phi - turn[3], 720.0))]
     assert len(main_bearings(case)) == 5
@@ -116,13 +124,17 @@ def test_two_rods_on_one_pin_have_half_of_it_each() -> None:
         *("crank pin of cylinder 1", "crosshead pin of cylinder 1", "crank pin of cylinder 2"),
         *("crosshead pin of cylinder 2", "bearing A", "bearing B"),
     ]
-    assert parts[0].pressure_max.value == pytest.approx(parts[0].load_max.value / (0.050 * 0.020), rel=1e-14)
+    assert parts[0].pressure_max.value == pytest.approx(
+        parts[0].load_max.value / (0.050 * 0.020), rel=1e-14
+    )
 
 
 def test_directions_in_the_three_frames() -> None:
     """At 90° the throw stands square to the stroke line, and the rod leads back by ψ from the pin to the crosshead."""
     pin, crosshead, *_ = Case(loads(MACHINES["one"])).bearings.parts
-    (throw,), (engine,), (rod,) = (getattr(pin.at([90.0]), f"load_{frame}") for frame in ("throw", "engine", "rod"))
+    (throw,), (engine,), (rod,) = (
+        getattr(pin.at([90.0]), f"load_{frame}") for frame in ("throw", "engine", "rod")
+    )
     assert engine - throw == pytest.approx(90.0, abs=1e-12)
     assert rod - engine == pytest.approx(math.degrees(math.asin(0.3)), abs=1e-12)
     state = Case(loads(MACHINES["one"])).cylinders[0].at([90.0])
@@ -164,15 +176,22 @@ def test_an_unloaded_arc_ends_where_the_load_vanishes(pressure: float) -> None:
     )
     change = case.cylinders[0].phi_reversal[0]
     turned = change + math.degrees(math.asin(math.sin(math.radians(change)) / 4))
-    assert case.bearings.parts[0].unloaded_arc == pytest.approx(240 - 2 * max(turned, 180 - turned), abs=1e-9)
+    assert case.bearings.parts[0].unloaded_arc == pytest.approx(
+        240 - 2 * max(turned, 180 - turned), abs=1e-9
+    )
 
 
 def test_unloaded_arcs_against_many_samples() -> None:
     """Of the gas engine, by marking every hundredth of a degree that any of 36 000 loads reaches."""
     for part in Case(loads(ENGINE)).bearings.parts:
         columns = part.at(np.arange(0.0, 720.0, 0.02))
-        for frame, arc in ((part.journal, part.unloaded_arc), (part.shell, part.unloaded_arc_shell)):
-            centres = np.unique(np.round(getattr(columns, f"load_{frame}") * 100).astype(int) % 36000)
+        for frame, arc in (
+            (part.journal, part.unloaded_arc),
+            (part.shell, part.unloaded_arc_shell),
+        ):
+            centres = np.unique(
+                np.round(getattr(columns, f"load_{frame}") * 100).astype(int) % 36000
+            )
             edges = np.diff(np.concatenate((centres, [centres[0] + 36000])))
             assert arc == pytest.approx(sum(max(gap / 100 - 120, 0.0) for gap in edges), abs=0.1)
 
@@ -184,17 +203,22 @@ def test_means_against_scipy() -> None:
     def load(degrees: np.ndarray, within: float) -> np.ndarray:
         return pin.at(degrees, np.full_like(degrees, within)).load
 
-    whole = sum(fixed_quad(load, low, high, args=((low + high) / 2,), n=60)[0] for low, high in pieces)
+    whole = sum(
+        fixed_quad(load, low, high, args=((low + high) / 2,), n=60)[0] for low, high in pieces
+    )
     assert pin.load_mean == pytest.approx(whole / 720, rel=1e-12)
     sampled = pin.at(np.arange(0.005, 720.0, 0.01)).load
-    assert pin.load_high == pytest.approx(sampled[sampled > pin.load_max.value / 2].mean(), rel=1e-4)
+    assert pin.load_high == pytest.approx(
+        sampled[sampled > pin.load_max.value / 2].mean(), rel=1e-4
+    )
     assert pin.load_min.value == pytest.approx(sampled.min(), rel=1e-6)
 
 
 def test_rubbing_speeds() -> None:
     pin, crosshead, A, _ = Case(
         loads(
-            ENGINE + "friction: {crosshead_pin: 0.05, crosshead_pin_diameter: 180 mm, crosshead_pin_length: 250 mm}\n"
+            ENGINE
+            + "friction: {crosshead_pin: 0.05, crosshead_pin_diameter: 180 mm, crosshead_pin_length: 250 mm}\n"
         )
     ).bearings.parts
     omega = 2 * math.pi * 200 / 60
@@ -203,8 +227,12 @@ def test_rubbing_speeds() -> None:
     assert A.rubbing_speed_max.value == pytest.approx(omega * 0.100, rel=1e-13)
     assert A.rubbing_speed_mean == pytest.approx(omega * 0.100, rel=1e-13)
     assert crosshead.rubbing_speed_max.value == pytest.approx(omega * 0.090 * 0.2, rel=1e-12)
-    assert crosshead.rubbing_speed_mean == pytest.approx(omega * 0.090 * 4 * math.asin(0.2) / (2 * math.pi), rel=1e-12)
-    assert crosshead.pressure_max.value == pytest.approx(crosshead.load_max.value / (0.18 * 0.25), rel=1e-14)
+    assert crosshead.rubbing_speed_mean == pytest.approx(
+        omega * 0.090 * 4 * math.asin(0.2) / (2 * math.pi), rel=1e-12
+    )
+    assert crosshead.pressure_max.value == pytest.approx(
+        crosshead.load_max.value / (0.18 * 0.25), rel=1e-14
+    )
 
 
 def test_work_of_friction_is_that_of_the_energy_balance() -> None:

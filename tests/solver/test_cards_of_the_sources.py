@@ -33,7 +33,9 @@ def test_lead_raises_the_pressure_evenly_to_that_of_admission() -> None:
     begin = (0.2e5 + 1.01325e5) * 0.27 / 0.09 - 1.01325e5  # hyperbola from 0.2 to 0.02, absolute
     straight = 8e5 + (begin - 8e5) * z / 0.02
     assert led.at(degrees).p_head[z < 0.02] == pytest.approx(straight[z < 0.02], rel=1e-9)
-    assert led.at(degrees).p_head[z >= 0.02] == pytest.approx(plain.at(degrees).p_head[z >= 0.02], rel=1e-12)
+    assert led.at(degrees).p_head[z >= 0.02] == pytest.approx(
+        plain.at(degrees).p_head[z >= 0.02], rel=1e-12
+    )
     grown = (0.2e5 + 1.01325e5) * 0.27 * math.log(0.09 / 0.07) - 1.01325e5 * 0.02
     lost = (begin + 8e5) / 2 * 0.02 - grown
     assert plain.mean_pressure - led.mean_pressure == pytest.approx(lost, rel=1e-10)
@@ -50,19 +52,25 @@ def test_diagram_factor_takes_its_share_of_the_work(kind: str) -> None:
         card = f"{head}indicator: {{head_end: {{{kind}: {{{CONSTANTS[kind]}}}%s}}}}\n"
         texts = [card % one for one in ("", ", diagram_factor: 0.8")]
         back = 0.1e5 if kind == "otto" else 0.0
-    plain, real = (kurbel.solve(one).cylinders[0] for one in texts)
+    plain, real = (kurbel.solve(text).cylinders[0] for text in texts)
     assert real.mean_pressure == pytest.approx(0.8 * plain.mean_pressure, rel=1e-12)
     degrees = np.arange(5.0, 360.0, 23.0)
     lowered = back + 0.8 * (plain.at(degrees).p_head - back)
     assert real.at(degrees).p_head == pytest.approx(lowered, rel=1e-11, abs=1e-4)
     assert abs(real.energy_residual) < 1e-12
-    found = kurbel.sweep(texts[1], {"indicator.head_end.diagram_factor": [0.7, 0.8, 0.9, 1.0]}, ["mean_pressure"])
-    assert found["mean_pressure"] == pytest.approx(np.array([0.7, 0.8, 0.9, 1]) * plain.mean_pressure, rel=1e-12)
+    found = kurbel.sweep(
+        texts[1], {"indicator.head_end.diagram_factor": [0.7, 0.8, 0.9, 1.0]}, ["mean_pressure"]
+    )
+    assert found["mean_pressure"] == pytest.approx(
+        np.array([0.7, 0.8, 0.9, 1]) * plain.mean_pressure, rel=1e-12
+    )
 
 
 def test_shaper_by_its_stroke() -> None:
     """Fork head: s = 2 R_l r/e; a connecting link of equal ends keeps it."""
-    shaper = "mechanism: slotted-lever\nframe: 400 mm\nlever: 700 mm\nspeed: 40 rpm\nstroke: 350 mm\n"
+    shaper = (
+        "mechanism: slotted-lever\nframe: 400 mm\nlever: 700 mm\nspeed: 40 rpm\nstroke: 350 mm\n"
+    )
     for link in ("", "link: 250 mm\n"):
         machine = kurbel.loads(shaper + link)
         assert machine.cylinders[0].mechanism.crank == pytest.approx(0.1, rel=1e-15)
@@ -85,7 +93,9 @@ def test_piston_rod_of_a_yoke_frame_is_bent_and_pushed() -> None:
     assert state["sigma_rod"] == pytest.approx(push + bending, rel=1e-13)
     assert state["sigma_rod_other"] == pytest.approx(push - bending, rel=1e-13)
     found = kurbel.sweep(text, {"gland": [0.2, 0.3, 0.4, 0.5]}, ["sigma_rod_max"])
-    assert found["sigma_rod_max"][1] == pytest.approx(kurbel.solve(text).cylinders[0]["sigma_rod_max"].value, rel=1e-12)
+    assert found["sigma_rod_max"][1] == pytest.approx(
+        kurbel.solve(text).cylinders[0]["sigma_rod_max"].value, rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(("written", "k"), [("gas", 1.0), ("{gas: 0.4}", 0.4)])
@@ -96,13 +106,19 @@ def test_rings_pressed_by_the_gas(written: str, k: float) -> None:
     cylinder = kurbel.solve(text).cylinders[0]
     surface = 0.08 * math.pi * 0.3 * 0.03 * k
     state = cylinder.at([20.0, 130.0, 200.0, 340.0])
-    assert state.F_friction == pytest.approx(-np.sign(state.c) * surface * np.abs(state.p_head), rel=1e-12)
+    assert state.F_friction == pytest.approx(
+        -np.sign(state.c) * surface * np.abs(state.p_head), rel=1e-12
+    )
     degrees = (np.arange(200_000) + 0.5) * 360 / 200_000
     fine = cylinder.at(degrees)
     work = float(np.sum(surface * np.abs(fine.p_head) * np.abs(fine.slope)) * 2 * math.pi / 200_000)
-    assert cylinder.friction_works["rings"] == pytest.approx(work, rel=1e-5)  # p jumps within a cell of the sum
+    assert cylinder.friction_works["rings"] == pytest.approx(
+        work, rel=1e-5
+    )  # p jumps within a cell of the sum
     assert abs(cylinder.energy_residual) < 1e-12
-    many = kurbel.sweep(text, {"indicator.head_end.steam.cut_off": [0.2, 0.3, 0.4, 0.5]}, ["friction_work", "T_max"])
+    many = kurbel.sweep(
+        text, {"indicator.head_end.steam.cut_off": [0.2, 0.3, 0.4, 0.5]}, ["friction_work", "T_max"]
+    )
     assert many["friction_work"][1] == pytest.approx(cylinder.friction_work, rel=1e-12)
     assert many["T_max"][1] == pytest.approx(cylinder.T_max.value, rel=1e-12)
 

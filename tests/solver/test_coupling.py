@@ -21,26 +21,36 @@ Points = Sequence[tuple[float, float]]
 RPM, OMEGA = 60.0, 2 * math.pi
 
 
-def coupled(order: float, damping: float = 20.0, inertia: float = 40.0, load: Load | None = None) -> MachineTurning:
+def coupled(
+    order: float, damping: float = 20.0, inertia: float = 40.0, load: Load | None = None
+) -> MachineTurning:
     """A machine whose natural order, with 60 kg m² before the coupling, is `order`."""
     stiffness = (order * OMEGA) ** 2 / (1 / 60.0 + 1 / inertia)
-    return of_points(POINTS, RPM, inertia=60.0, coupling=Coupling(stiffness, inertia, damping), load=load)
+    return of_points(
+        POINTS, RPM, inertia=60.0, coupling=Coupling(stiffness, inertia, damping), load=load
+    )
 
 
 def test_natural_order() -> None:
     assert coupled(2.5).natural_order == pytest.approx(2.5, rel=1e-14)
-    assert natural_order(Coupling(stiffness=200.0, inertia=1e12), np.array(8.0), 1.0) == pytest.approx(5.0, rel=1e-9)
+    assert natural_order(
+        Coupling(stiffness=200.0, inertia=1e12), np.array(8.0), 1.0
+    ) == pytest.approx(5.0, rel=1e-9)
 
 
 ADVISED = [(0.01, 3e3), (0.02, 1e5), (0.005, 2e4), (0.05, 40.0)]
 
 
 @pytest.mark.parametrize(("delta", "stiffness"), few(ADVISED, [ADVISED[1], ADVISED[3]]))
-def test_the_advised_flywheel_meets_the_wish_on_the_coupling(delta: float, stiffness: float) -> None:
+def test_the_advised_flywheel_meets_the_wish_on_the_coupling(
+    delta: float, stiffness: float
+) -> None:
     coupling = Coupling(stiffness, 40.0, 20.0)
     machine = of_points(POINTS, RPM, delta=delta, coupling=coupling)
     assert machine.misses_wanted_delta
-    assert of_points(POINTS, RPM, inertia=machine.J_exact, coupling=coupling).delta == pytest.approx(delta, rel=1e-9)
+    assert of_points(
+        POINTS, RPM, inertia=machine.J_exact, coupling=coupling
+    ).delta == pytest.approx(delta, rel=1e-9)
 
 
 def test_above_order_100_the_coupling_is_rigid() -> None:
@@ -68,14 +78,18 @@ def test_resonance_without_damping_has_no_solution() -> None:
 
 def test_a_speed_that_falls_to_zero_is_a_stall_with_its_angle() -> None:
     light = of_points(POINTS, RPM, inertia=3.0, coupling=Coupling(20.0, 3.0))
-    with pytest.raises(NoSolutionError, match=r"stops near φ = [\d.]+°: with J = 3 kg m\^2 and the elastic") as stop:
+    with pytest.raises(
+        NoSolutionError, match=r"stops near φ = [\d.]+°: with J = 3 kg m\^2 and the elastic"
+    ) as stop:
         _ = light.delta
     enough = float(str(stop.value).partition("from J = ")[2].partition(" kg")[0])
     assert of_points(POINTS, RPM, inertia=enough, coupling=Coupling(20.0, 3.0)).omega_min.value > 0
     assert coupled(0.4).omega_min.value > 0
 
 
-def under_a_law(machine: MachineTurning, torque: Points, law: Any, own: float) -> tuple[np.ndarray, np.ndarray]:
+def under_a_law(
+    machine: MachineTurning, torque: Points, law: Any, own: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Angles, torque in the coupling and ω₁ of the motion that repeats, and what a turn makes of small disturbances.
 
     J₁ ω̇₁ = M − T and J₂ ω̇₂ = T − L(ω₂) with their variations, by scipy and Newton's method for the start.
@@ -91,27 +105,40 @@ def under_a_law(machine: MachineTurning, torque: Points, law: Any, own: float) -
             first, last = np.interp([low + 1e-9, high - 1e-9], *zip(*torque))
 
             def rates(
-                phi: float, flat: np.ndarray, low: float = low, high: float = high, ends: Any = (first, last)
+                phi: float,
+                flat: np.ndarray,
+                low: float = low,
+                high: float = high,
+                ends: Any = (first, last),
             ) -> np.ndarray:
                 (twist, one, two), varied = flat[:3], flat[3:].reshape(3, 3)
                 load, slope = law(two)
                 passed = k * twist + d * (one - two)
                 of_passed = np.array([k, d, -d])
                 driving = ends[0] + (phi - low) / (high - low) * (ends[1] - ends[0])
-                jacobian = np.array([[0, 1, -1], -of_passed / own, (of_passed - [0, 0, slope]) / driven])
+                jacobian = np.array(
+                    [[0, 1, -1], -of_passed / own, (of_passed - [0, 0, slope]) / driven]
+                )
                 here = np.array([one - two, (driving - passed) / own, (passed - load) / driven])
                 return np.concatenate((here, (jacobian @ varied).ravel())) * (math.pi / 180 / omega)
 
             at = np.linspace(low, high, 20) if dense else None
-            solved = solve_ivp(rates, (low, high), state, method="DOP853", rtol=1e-13, atol=1e-14, t_eval=at)
+            solved = solve_ivp(
+                rates, (low, high), state, method="DOP853", rtol=1e-13, atol=1e-14, t_eval=at
+            )
             state = solved.y[:, -1]
             rows.append(np.vstack((solved.t, solved.y[:3])))
         return state, rows
 
     start = np.array([machine.M_mean / k, omega, omega])
-    for _ in range(9):  # under a constant load every mean speed repeats: the step that does not change it is taken
+    for _ in range(
+        9
+    ):  # under a constant load every mean speed repeats: the step that does not change it is taken
         state, _ = turn(start)
-        start = start - np.linalg.lstsq(state[3:].reshape(3, 3) - np.eye(3), state[:3] - start, rcond=1e-9)[0]
+        start = (
+            start
+            - np.linalg.lstsq(state[3:].reshape(3, 3) - np.eye(3), state[:3] - start, rcond=1e-9)[0]
+        )
     state, rows = turn(start, dense=True)
     angles, twist, one, two = np.hstack(rows)
     return np.stack((angles, k * twist + d * (one - two), one)), state[3:].reshape(3, 3)
@@ -136,7 +163,9 @@ def test_two_masses_under_a_load_over_the_speed(order: float, load: Load | None)
             return mean, 0.0
         if load.slip:
             return mean * (1 + (speed / OMEGA - 1) / load.slip), mean / (load.slip * OMEGA)
-        return mean * (speed / OMEGA) ** load.power, load.power * mean * speed ** (load.power - 1) / OMEGA**load.power
+        return mean * (speed / OMEGA) ** load.power, load.power * mean * speed ** (
+            load.power - 1
+        ) / OMEGA**load.power
 
     (angles, torque, speed), after = under_a_law(machine, POINTS, law, 60.0)
     inside = np.abs(angles[:, None] - np.array([a for a, _ in POINTS])).min(axis=1) > 1e-6

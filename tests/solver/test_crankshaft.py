@@ -22,11 +22,35 @@ from shafts import body, place_at, shaft, strength
 HEAVY = {"flywheel_mass": 5000.0, "flywheel_position": 0.5}
 ENGINE_CARD = Card.from_keys(
     unit=(1e5, 1),
-    expansion=[(0, 16), (0.03, 25), (0.1, 17.5), (0.2, 11.2), (0.35, 6.9), (0.82, 2.9), (0.92, 0.7), (1, 0.2)],
-    compression=[(1, 0.2), (0.78, 0.3), (0.55, 0.9), (0.35, 2.2), (0.2, 4.5), (0.1, 8), (0.04, 12.6), (0, 16)],
+    expansion=[
+        (0, 16),
+        (0.03, 25),
+        (0.1, 17.5),
+        (0.2, 11.2),
+        (0.35, 6.9),
+        (0.82, 2.9),
+        (0.92, 0.7),
+        (1, 0.2),
+    ],
+    compression=[
+        (1, 0.2),
+        (0.78, 0.3),
+        (0.55, 0.9),
+        (0.35, 2.2),
+        (0.2, 4.5),
+        (0.1, 8),
+        (0.04, 12.6),
+        (0, 16),
+    ],
 )
 ENGINES: dict[str, dict[str, Any]] = {
-    "lying": {"crankshaft": shaft(**HEAVY), "card": ENGINE_CARD, "inclination": 0.0, "masses": Masses(400), "rpm": 200},
+    "lying": {
+        "crankshaft": shaft(**HEAVY),
+        "card": ENGINE_CARD,
+        "inclination": 0.0,
+        "masses": Masses(400),
+        "rpm": 200,
+    },
     "standing": {"crankshaft": shaft(**HEAVY), "card": ENGINE_CARD, "inclination": 90.0},
     "inclined": {
         "crankshaft": shaft(flywheel_mass=3000.0, flywheel_position=-0.1, journal_length=0.19),
@@ -61,7 +85,9 @@ def test_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float
     # what web B carries at its middle, beside the axis of the shaft: all that stands beyond it
     beyond = [(np.array([B_x, B_y, 0.0]), np.array([0.0, 0.0, a + b])), loads[1]]
     section = np.array([0.0, 0.0, a + e])
-    moment = sum((np.cross(point - section, force) for force, point in beyond), np.array([0.0, 0.0, couple]))
+    moment = sum(
+        (np.cross(point - section, force) for force, point in beyond), np.array([0.0, 0.0, couple])
+    )
     moments = found.moments_at(e)
     in_plane, twist = moments.real, moments.imag
     assert abs(in_plane[0]) == pytest.approx(abs(moment[0]), abs=4 * size)
@@ -69,7 +95,9 @@ def test_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float
     assert abs(found.torque_B[0]) == pytest.approx(abs(moment[2]), abs=size)
     # and the pin at web B, whose axis lies r higher
     section, sized = np.array([0.0, r, a + 0.11]), math.pi * 0.18**3 / 32
-    moment = sum((np.cross(point - section, force) for force, point in beyond), np.array([0.0, 0.0, couple]))
+    moment = sum(
+        (np.cross(point - section, force) for force, point in beyond), np.array([0.0, 0.0, couple])
+    )
     pin_end = place_at(found, "pin", "at web B")
     assert pin_end.normal[0] * sized == pytest.approx(math.hypot(*moment[:2]), abs=4 * size)
     assert pin_end.torsion[0] * 2 * sized == pytest.approx(abs(moment[2]), abs=4 * size)
@@ -88,7 +116,10 @@ def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
     solved = strength(**ENGINES[name])
     at = solved.at(np.linspace(0, 360, 72001))
     for part in PARTS:
-        for column, largest in ((f"sigma_{part}", solved.sigma_max(part)), (f"mises_{part}", solved.mises_max(part))):
+        for column, largest in (
+            (f"sigma_{part}", solved.sigma_max(part)),
+            (f"mises_{part}", solved.mises_max(part)),
+        ):
             brute = getattr(at, column).max()
             assert brute <= largest.value * (1 + 1e-13)
             assert brute == pytest.approx(largest.value, rel=1e-4)
@@ -96,7 +127,15 @@ def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("inclination", "degrees", "D", "T"),
-    [(0, 0, 0, -1), (0, 90, 1, 0), (0, 180, 0, 1), (90, 0, 1, 0), (90, 90, 0, 1), (90, 180, -1, 0), (-90, 0, -1, 0)],
+    [
+        (0, 0, 0, -1),
+        (0, 90, 1, 0),
+        (0, 180, 0, 1),
+        (90, 0, 1, 0),
+        (90, 90, 0, 1),
+        (90, 180, -1, 0),
+        (-90, 0, -1, 0),
+    ],
 )
 def test_direction_of_the_weight(inclination: float, degrees: float, D: float, T: float) -> None:
     """Lying, the pin stands above the shaft at 90° and the weight points from it to the shaft."""
@@ -105,11 +144,17 @@ def test_direction_of_the_weight(inclination: float, degrees: float, D: float, T
 
 def test_largest_torque_at_a_jump_is_taken_before_it() -> None:
     """Release at 40 % of the stroke, before T has its natural top: the pin is strained by the pressure before it."""
-    card = Card.from_keys(unit=(1e5, 1), expansion=[(0, 10), (0.4, 10), (0.4, 0), (1, 0)], compression=[(1, 0), (0, 0)])
+    card = Card.from_keys(
+        unit=(1e5, 1),
+        expansion=[(0, 10), (0.4, 10), (0.4, 0), (1, 0)],
+        compression=[(1, 0), (0, 0)],
+    )
     mechanism = SliderCrank(0.3, 1.5)
     solved = strength(shaft(), mechanism, card)
     degrees = solved.at_largest_torque[0].degrees
-    assert degrees == pytest.approx(float(mechanism.crank_angles_at(np.array([0.24]), True)[0]), abs=1e-9)
+    assert degrees == pytest.approx(
+        float(mechanism.crank_angles_at(np.array([0.24]), True)[0]), abs=1e-9
+    )
     pin = solved.at_largest_torque[0]
     force = 1e6 * math.pi / 4 * 0.4**2
     T = force * mechanism.slope(CrankAngle.of(degrees)) / 0.3
@@ -120,9 +165,12 @@ class TestDeadCentre:
     def test_inertia_gives_no_relief(self) -> None:
         """Starting and slow running (R p. 608): the same stresses at any speed, though the running machine has less."""
         at_rest, running = (
-            strength(shaft(), mechanism=SliderCrank(0.3, 1.5), rpm=rpm, masses=Masses(500.0)) for rpm in (0, 300)
+            strength(shaft(), mechanism=SliderCrank(0.3, 1.5), rpm=rpm, masses=Masses(500.0))
+            for rpm in (0, 300)
         )
-        assert [one.combined for one in running.at_dead_centre] == [one.combined for one in at_rest.at_dead_centre]
+        assert [one.combined for one in running.at_dead_centre] == [
+            one.combined for one in at_rest.at_dead_centre
+        ]
         assert running.at([0]).sigma_pin[0] < at_rest.at([0]).sigma_pin[0]
 
     def test_offset_crank(self) -> None:
@@ -132,7 +180,9 @@ class TestDeadCentre:
         _, cos_psi = mechanism.rod_angle(CrankAngle.of(mechanism.dead_centres()[0]))
         A_D = 1e6 * math.pi / 4 * 0.4**2 / cos_psi * 0.42 / 0.82
         pin = solved.at_dead_centre[0]
-        assert pin.bending_in_plane == pytest.approx(32 * A_D * 0.4 / (math.pi * 0.18**3), rel=1e-12)
+        assert pin.bending_in_plane == pytest.approx(
+            32 * A_D * 0.4 / (math.pi * 0.18**3), rel=1e-12
+        )
         assert (pin.bending_out_of_plane, pin.torsion) == (0, 0)
 
     def test_pulling_engine_stands_in_the_outer_one(self) -> None:
@@ -149,9 +199,13 @@ class TestBearings:
         largest = solved.pressure_max("pin")
         assert largest.value == pytest.approx(pressure, rel=1e-14)
         assert solved.pressure_mean("pin") == pytest.approx(pressure, rel=1e-14)
-        assert solved.pressure_velocity("pin") == pytest.approx(pressure * math.pi * 0.18 * 200 / 60, rel=1e-14)
+        assert solved.pressure_velocity("pin") == pytest.approx(
+            pressure * math.pi * 0.18 * 200 / 60, rel=1e-14
+        )
         mean_A = solved.pressure_mean("journal_A")
-        assert mean_A == pytest.approx(pressure * 0.18 * 0.2 * 0.42 / 0.82 / (0.19 * 0.3), rel=1e-14)
+        assert mean_A == pytest.approx(
+            pressure * 0.18 * 0.2 * 0.42 / 0.82 / (0.19 * 0.3), rel=1e-14
+        )
 
 
 def test_safety_counts_dead_centre_and_cycle() -> None:
@@ -171,7 +225,9 @@ def test_no_section_of_the_pin_is_strained_more_than_its_places(
 ) -> None:
     found = body(D, T, (G_D, G_T), flywheel_position=f, flywheel_mass=1.0, journal_length=None)
     u = 0.11 * along
-    before, beyond = (float(np.abs(moments)[0]) for moments in (found.moments_at(-u), found.moments_at(u)))
+    before, beyond = (
+        float(np.abs(moments)[0]) for moments in (found.moments_at(-u), found.moments_at(u))
+    )
     worst = max(place.normal[0] for place in places(found) if place.part == "pin")
     assert max(before, beyond) <= worst * math.pi * 0.18**3 / 32 * (1 + 1e-12) + 1e-9
 
@@ -206,12 +262,22 @@ PIN, JOURNAL = math.pi * 0.18**3 / 32, math.pi * 0.19**3 / 32
 
 
 @given(forces, forces, forces, forces, st.floats(-0.75, 2.0))
-def test_overhung_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float, f: float) -> None:
+def test_overhung_against_a_free_body_in_space(
+    D: float, T: float, G_D: float, G_T: float, f: float
+) -> None:
     """Reactions from the equations of a rigid body; every section from what lies on the side of the pin alone."""
-    found = body(D, T, (G_D, G_T), **OVERHUNG | {"flywheel_position": f, "flywheel_mass": 1.0, "journal_length": None})
+    found = body(
+        D,
+        T,
+        (G_D, G_T),
+        **OVERHUNG | {"flywheel_position": f, "flywheel_mass": 1.0, "journal_length": None},
+    )
     a, b, e, r = 0.4, 1.2, 0.17, 0.3
     # x along T, y toward the pin, z along the shaft from the pin; unknown: A and B on the shaft (x, y)
-    loads = [(np.array([T, -D, 0.0]), np.array([0.0, r, 0.0])), (np.array([G_T, -G_D, 0.0]), np.array([0, 0, b + f]))]
+    loads = [
+        (np.array([T, -D, 0.0]), np.array([0.0, r, 0.0])),
+        (np.array([G_T, -G_D, 0.0]), np.array([0, 0, b + f])),
+    ]
     rows = []
     for direction in (np.array([1.0, 0, 0]), np.array([0, 1.0, 0])):
         rows += [[*direction[:2], *np.cross([0.0, 0.0, z], direction)[:2]] for z in (a, b)]
@@ -222,20 +288,33 @@ def test_overhung_against_a_free_body_in_space(D: float, T: float, G_D: float, G
     assert bearings == pytest.approx([-A_x, A_y, -B_x, B_y], abs=size)
 
     def section(y: float, z: float, *more: tuple[Any, Any]) -> Any:
-        return sum(np.cross(point - np.array([0.0, y, z]), force) for force, point in (loads[0], *more))
+        return sum(
+            np.cross(point - np.array([0.0, y, z]), force) for force, point in (loads[0], *more)
+        )
 
     bearing_A = (np.array([A_x, A_y, 0.0]), np.array([0.0, 0.0, a]))
     at = {(place.part, place.name): place for place in places(found)}
     web = section(0.0, e)
-    assert at["web_A", "wide face"].compression[0] == pytest.approx(D / 0.12 / 0.22, abs=size / 0.0264)
-    assert at["web_A", "wide face"].bending_in_plane[0] * 0.12**2 * 0.22 / 6 == pytest.approx(abs(web[0]), abs=size)
-    assert at["web_A", "wide face"].torsion[0] * 0.12**2 * 0.22 / 4.5 == pytest.approx(abs(web[1]), abs=size)
+    assert at["web_A", "wide face"].compression[0] == pytest.approx(
+        D / 0.12 / 0.22, abs=size / 0.0264
+    )
+    assert at["web_A", "wide face"].bending_in_plane[0] * 0.12**2 * 0.22 / 6 == pytest.approx(
+        abs(web[0]), abs=size
+    )
+    assert at["web_A", "wide face"].torsion[0] * 0.12**2 * 0.22 / 4.5 == pytest.approx(
+        abs(web[1]), abs=size
+    )
     narrow = at["web_A", "narrow face"]
-    assert narrow.bending_out_of_plane[0] * 0.12 * 0.22**2 / 6 == pytest.approx(abs(web[2]), abs=size)
+    assert narrow.bending_out_of_plane[0] * 0.12 * 0.22**2 / 6 == pytest.approx(
+        abs(web[2]), abs=size
+    )
     pin = section(r, 0.11)
     assert at["pin", "at web A"].normal[0] * PIN == pytest.approx(math.hypot(*pin[:2]), abs=size)
     assert at["pin", "at web A"].torsion[0] == pin[2] == 0
-    journals = {("journal_A", "at web"): section(0, 0.23), ("journal_A", "in bearing"): section(0, a)}
+    journals = {
+        ("journal_A", "at web"): section(0, 0.23),
+        ("journal_A", "in bearing"): section(0, a),
+    }
     if f < 0:
         journals["journal_B", "at flywheel"] = section(0, b + f, bearing_A)
     else:

@@ -34,14 +34,22 @@ SPRING = Card.from_keys(
     clearance=0.07,
 )
 MASSES = Masses(600.0, ConnectingRod(220.0, center_of_gravity=1.2, inertia=90.0))
-ENGINE = Cylinder(SliderCrank(0.4, 2.0), pistons=(STEAM,), masses=MASSES, friction=Friction(0.05), inclination=20.0)
+ENGINE = Cylinder(
+    SliderCrank(0.4, 2.0),
+    pistons=(STEAM,),
+    masses=MASSES,
+    friction=Friction(0.05),
+    inclination=20.0,
+)
 PUMPING = replace(ENGINE, pistons=(STEAM, PUMP))
 DRIVEN = replace(ENGINE, pistons=(PUMP,), crank_position=70.0)
 ANGLES = np.array([0.0, 17.3, 90.0, 123.4, 180.0, 271.0, 359.0])
 
 
 def turning(*cylinders: Cylinder, eta: float = 1.0, **more: Any) -> MachineTurning:
-    named = tuple(replace(one, name=f"cylinder {number}") for number, one in enumerate(cylinders, 1))
+    named = tuple(
+        replace(one, name=f"cylinder {number}") for number, one in enumerate(cylinders, 1)
+    )
     return Case(Machine(named, speed=50 / 60, efficiency=eta, **more)).flywheel
 
 
@@ -53,7 +61,9 @@ def gas_torque(*pistons: Piston, behind: float = 0.0) -> np.ndarray:
 def works() -> Machine:
     """The waterworks engine with both its cranks, without its friction."""
     machine = load(TWO_CRANKS)
-    return replace(machine, cylinders=tuple(replace(one, friction=None) for one in machine.cylinders))
+    return replace(
+        machine, cylinders=tuple(replace(cylinder, friction=None) for cylinder in machine.cylinders)
+    )
 
 
 # the waterworks engine
@@ -77,7 +87,10 @@ def test_on_a_rod_with_both_only_the_driving_force_loses() -> None:
 
 def test_driven_cylinders_on_a_shaft_that_others_drive_count_in_full() -> None:
     each = [turning(one).at(ANGLES).M for one in (ENGINE, DRIVEN)]
-    assert pytest.approx(ETA * each[0] + each[1], abs=1e-8) == turning(ENGINE, DRIVEN, eta=ETA).at(ANGLES).M
+    assert (
+        pytest.approx(ETA * each[0] + each[1], abs=1e-8)
+        == turning(ENGINE, DRIVEN, eta=ETA).at(ANGLES).M
+    )
 
 
 def test_a_machine_that_is_only_driven_needs_more() -> None:
@@ -85,14 +98,22 @@ def test_a_machine_that_is_only_driven_needs_more() -> None:
     less = turning(DRIVEN, replace(DRIVEN, crank_position=160.0), eta=ETA)
     assert pytest.approx(whole.at(ANGLES).M / ETA, rel=1e-13) == less.at(ANGLES).M
     press = replace(ENGINE, pistons=(), ram_force=RamForce(2e4), friction=None)
-    assert pytest.approx(turning(press).at(ANGLES).M / ETA, rel=1e-13) == turning(press, eta=ETA).at(ANGLES).M
+    assert (
+        pytest.approx(turning(press).at(ANGLES).M / ETA, rel=1e-13)
+        == turning(press, eta=ETA).at(ANGLES).M
+    )
 
 
-@pytest.mark.parametrize(("piston", "factor"), [(STEAM, ETA), (PUMP, 1 / ETA)], ids=["drives", "driven"])
+@pytest.mark.parametrize(
+    ("piston", "factor"), [(STEAM, ETA), (PUMP, 1 / ETA)], ids=["drives", "driven"]
+)
 @pytest.mark.parametrize("idle", [constant_pressure(3e5), SPRING], ids=["constant", "gas spring"])
 def test_a_piston_without_work_is_neither(piston: Piston, factor: float, idle: Card) -> None:
     beside = replace(ENGINE, pistons=(piston, replace(IDLE, indicator=Indicator(idle))))
-    assert pytest.approx(factor * turning(beside).at(ANGLES).M, rel=1e-13) == turning(beside, eta=ETA).at(ANGLES).M
+    assert (
+        pytest.approx(factor * turning(beside).at(ANGLES).M, rel=1e-13)
+        == turning(beside, eta=ETA).at(ANGLES).M
+    )
 
 
 def test_a_given_effort_counts_by_its_mean() -> None:

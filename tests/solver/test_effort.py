@@ -68,12 +68,17 @@ def test_the_excess_work_is_the_integral_of_the_torque(cylinder: Cylinder) -> No
         breaks = np.append(machine.breaks[machine.breaks < upto], upto)
         middles, halves = (breaks[1:] + breaks[:-1]) / 2, np.diff(breaks) / 2
         degrees = middles + halves * nodes[:, None]
-        torque = machine.at(degrees.ravel(), np.broadcast_to(middles, degrees.shape).ravel()).M - machine.M_mean
+        torque = (
+            machine.at(degrees.ravel(), np.broadcast_to(middles, degrees.shape).ravel()).M
+            - machine.M_mean
+        )
         return math.fsum(np.radians(halves) * (weights @ change(torque.reshape(degrees.shape))))
 
     turnover = quadrature(360.0, np.abs)
     for angle in (13.0, 100.0, 181.5, 300.0, 360.0):
-        assert machine.at([angle]).E[0] == pytest.approx(quadrature(angle, np.asarray), abs=2e-14 * turnover)
+        assert machine.at([angle]).E[0] == pytest.approx(
+            quadrature(angle, np.asarray), abs=2e-14 * turnover
+        )
 
 
 def test_the_work_of_the_masses_is_what_their_energy_loses() -> None:
@@ -92,11 +97,15 @@ def test_the_work_of_a_card_is_its_closed_area() -> None:
     machine = turning(replace(ENGINE, masses=None))
     cylinder = Case(machine.machine).cylinders[0]
     assert machine.work_shaft == pytest.approx(cylinder.work, rel=2e-15)
-    compressed = Card.from_keys(unit=(1e5, 1), expansion=[(0, 8), (0.3, 8), (1, 2)], compression=[(1, 0), (0, 0)])
+    compressed = Card.from_keys(
+        unit=(1e5, 1), expansion=[(0, 8), (0.3, 8), (1, 2)], compression=[(1, 0), (0, 0)]
+    )
     single = replace(ENGINE, masses=None, pistons=(Piston(0.2, indicator=Indicator(compressed)),))
     work = turning(single)
     stroke = (0.3 * 8e5 + 0.7 * 5e5) * 0.8 * Piston(0.2).head_area
-    assert work.at(np.array([180.0])).E[0] + work.M_mean * math.pi == pytest.approx(stroke, rel=2e-15)
+    assert work.at(np.array([180.0])).E[0] + work.M_mean * math.pi == pytest.approx(
+        stroke, rel=2e-15
+    )
 
 
 def test_lobes_add_up_to_nothing_and_span_the_swing() -> None:
@@ -118,7 +127,14 @@ def test_jumps_are_crossings_and_have_both_their_values() -> None:
 
 class _WithPower(TurningState):
     commands = ("flywheel",)
-    N = value("N", "power", "Power at the shaft", lambda one: one.M * one.omega, extremes=("flywheel",), called="power")
+    N = value(
+        "N",
+        "power",
+        "Power at the shaft",
+        lambda one: one.M * one.omega,
+        extremes=("flywheel",),
+        called="power",
+    )
 
 
 class _Powered(MachineTurning):

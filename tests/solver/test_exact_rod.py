@@ -23,7 +23,11 @@ OMEGA = RPM * 2 * np.pi / 60
 
 
 def rod_alone(
-    mass: float = 250.0, at: float = 0.9, inertia: float = 70.0, offset: float = 0.0, **cylinder: Any
+    mass: float = 250.0,
+    at: float = 0.9,
+    inertia: float = 70.0,
+    offset: float = 0.0,
+    **cylinder: Any,
 ) -> CylinderForces:
     masses = Masses(0.0, ConnectingRod(mass, center_of_gravity=at, inertia=inertia))
     return one_cylinder(SliderCrank(CRANK, LENGTH, offset), RPM, masses=masses, **cylinder)
@@ -41,7 +45,12 @@ def kinetic_energy(phi: Any, mass: float, at: float, inertia: float, offset: flo
     return mass / 2 * (v_along**2 + v_across**2) + inertia / 2 * psi_dot**2
 
 
-ROD = st.tuples(st.floats(1, 500), st.floats(0.0, LENGTH), st.floats(0.0, 200.0), st.sampled_from([0.0, 0.15, -0.3]))
+ROD = st.tuples(
+    st.floats(1, 500),
+    st.floats(0.0, LENGTH),
+    st.floats(0.0, 200.0),
+    st.sampled_from([0.0, 0.15, -0.3]),
+)
 
 
 @given(ROD)
@@ -63,7 +72,9 @@ def test_the_reduced_inertia_is_that_of_the_kinetic_energy(offset: float) -> Non
     turning = Case(Machine((cylinder,), speed=RPM / 60, flywheel=Flywheel(wheel))).flywheel
     degrees = np.arange(0.0, 360.0, 7.0)
     phi = np.radians(degrees)
-    energy = kinetic_energy(phi, 250.0, 0.9, 70.0, offset) + kinetic_energy(phi, 40.0, 0.0, 0.0, offset)
+    energy = kinetic_energy(phi, 250.0, 0.9, 70.0, offset) + kinetic_energy(
+        phi, 40.0, 0.0, 0.0, offset
+    )
     reduced = 2 * energy / OMEGA**2
     assert moving_inertia(turning, degrees) == pytest.approx(reduced, rel=1e-12)
     held = (wheel + reduced) * turning.at(degrees).omega ** 2
@@ -115,7 +126,10 @@ def test_free_body_of_the_rod(friction: Friction | None, offset: float) -> None:
     # pin: T along (sin φ, cos φ), D along (cos φ, −sin φ) are what the rod does to it
     pin_along = s.T * np.sin(phi) + s.D * np.cos(phi)
     pin_across = s.T * np.cos(phi) - s.D * np.sin(phi)
-    weight_along, weight_across = mass * GRAVITY * np.sin(incline), -mass * GRAVITY * np.cos(incline)
+    weight_along, weight_across = (
+        mass * GRAVITY * np.sin(incline),
+        -mass * GRAVITY * np.cos(incline),
+    )
     assert push - pin_along + weight_along == pytest.approx(mass * along, abs=1e-7)
     assert lift - pin_across + weight_across == pytest.approx(mass * across, abs=1e-7)
     assert push * np.cos(psi) + lift * np.sin(psi) == pytest.approx(s.S_crosshead, abs=1e-7)

@@ -40,7 +40,9 @@ def area(line: str) -> float:
     return BAR * sum((b[0] - a[0]) * (a[1] + b[1]) / 2 for a, b in pairwise(points))
 
 
-@pytest.mark.parametrize("mechanism", [MECHANISM, SliderCrank(0.15, 0.66, 0.1), SliderCrank(0.15, math.inf)])
+@pytest.mark.parametrize(
+    "mechanism", [MECHANISM, SliderCrank(0.15, 0.66, 0.1), SliderCrank(0.15, math.inf)]
+)
 def test_lines_in_the_order_of_the_process(mechanism: SliderCrank) -> None:
     """Firing dead centre, expansion out, exhaust back, intake out, compression back; offset cranks too."""
     inner, outer = mechanism.dead_centres()
@@ -98,7 +100,9 @@ def test_energy_over_the_cycle(crank_end: Any, more: dict[str, Any]) -> None:
         Constant.from_keys(expansion=-0.3e5, compression=6e5),
         STEAM_CARD,
         Compressor(0.0, 6e5, clearance=0.05),
-        Measured.from_keys(unit=(1e5, 1), points=[(0.0, 6.0), (90.0, 0.1), (200.0, 0.0), (360.0, 6.0)]),
+        Measured.from_keys(
+            unit=(1e5, 1), points=[(0.0, 6.0), (90.0, 0.1), (200.0, 0.0), (360.0, 6.0)]
+        ),
     ],
     ids=["gas at rest", "pump", "card", "compressor", "trace"],
 )
@@ -120,5 +124,7 @@ def test_a_pump_behind_a_four_stroke_engine_works_on_every_turn(pump: Any) -> No
     degrees = np.arange(1.0, 720.0, 7.3)
     expected = alone.at(degrees).P + pumping.at(degrees).P
     assert pytest.approx(expected, rel=1e-12, abs=1e-6) == both.at(degrees).P
-    assert both.work == pytest.approx((alone.work or 0) + 2 * (pumping.work or 0), rel=1e-12, abs=1e-6)
+    assert both.work == pytest.approx(
+        (alone.work or 0) + 2 * (pumping.work or 0), rel=1e-12, abs=1e-6
+    )
     assert abs(both.energy_residual or 0.0) < 1e-12

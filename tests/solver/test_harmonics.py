@@ -50,7 +50,12 @@ def by_integrals(machine: Machine, orders: list[float]) -> list[complex]:
     """M_ν of one cylinder: its torque with 40 digits, written as the textbooks have it."""
     with mp.workdps(40):
         book = TextbookMachine(machine, machine.cylinders)
-        edges = sorted({*np.asarray(book.edges, dtype=float), *np.arange(0.0, 360.0 * machine.revolutions, 15.0)})
+        edges = sorted(
+            {
+                *np.asarray(book.edges, dtype=float),
+                *np.arange(0.0, 360.0 * machine.revolutions, 15.0),
+            }
+        )
 
         def torque(degrees: float) -> Any:
             angle = np.array([mpmath.mpf(degrees)])
@@ -70,7 +75,9 @@ def test_against_torques_of_40_digits(name: str, orders: list[float]) -> None:
     """Cards with corners and jumps: 1e-12 of the largest torque."""
     machine = Machine((steam(),), speed=50 / 60) if name == "steam" else load(CONFIGS[name])
     machine = replace(
-        machine, cylinders=(replace(machine.cylinders[0], friction=None, inclination=None),), efficiency=1.0
+        machine,
+        cylinders=(replace(machine.cylinders[0], friction=None, inclination=None),),
+        efficiency=1.0,
     )
     found = orders_of(machine, orders)
     largest = Case(machine).flywheel.M_max.value
@@ -100,7 +107,9 @@ def test_a_diagram_with_jumps_in_closed_form() -> None:
 
 def test_the_series_of_the_inertia_torque() -> None:
     """Den Hartog's λ/4, −½, −3λ/4, −λ²/4 are its beginnings; λ = 1/4, with 12 digits."""
-    machine = Machine((Cylinder(SliderCrank(1.0, 4.0), masses=Masses(1.0)),), speed=1 / (2 * math.pi))
+    machine = Machine(
+        (Cylinder(SliderCrank(1.0, 4.0), masses=Masses(1.0)),), speed=1 / (2 * math.pi)
+    )
     found = orders_of(machine).machine.inertia[:8]
     known = [0.063506260577, -0.500130140561, -0.192055573420, -0.016129031165]
     known += [0.002592310746, 0.000390320062, -4.3971084e-5, -8.396165e-6]
@@ -113,8 +122,12 @@ def test_a_crank_that_follows_turns_its_orders() -> None:
     alone = orders_of(Machine((steam(),), speed=50 / 60)).machine
     two = orders_of(Machine((steam(), steam(name="b", crank_position=73.0)), speed=50 / 60))
     turn = np.exp(-1j * np.radians(73.0 * alone.orders))
-    assert two.machine.whole == pytest.approx(alone.whole * (1 + turn), abs=1e-12 * np.abs(alone.whole).max())
-    assert two.cylinders[1].own.whole == pytest.approx(alone.whole, abs=1e-12 * np.abs(alone.whole).max())
+    assert two.machine.whole == pytest.approx(
+        alone.whole * (1 + turn), abs=1e-12 * np.abs(alone.whole).max()
+    )
+    assert two.cylinders[1].own.whole == pytest.approx(
+        alone.whole, abs=1e-12 * np.abs(alone.whole).max()
+    )
 
 
 @pytest.mark.parametrize(

@@ -17,18 +17,35 @@ from kurbel.solver.gas import process_in
 mpf = mpmath.mpf
 BAR = 1e5
 
-STEAM = Steam(8 * BAR, 0.2 * BAR, cut_off=0.3, clearance=0.05, release=0.92, compression=0.12, exponent=1.0)
-WET = Steam(8 * BAR, -0.8 * BAR, cut_off=0.2, clearance=0.07, release=0.95, compression=0.2, exponent=1.135)
+STEAM = Steam(
+    8 * BAR, 0.2 * BAR, cut_off=0.3, clearance=0.05, release=0.92, compression=0.12, exponent=1.0
+)
+WET = Steam(
+    8 * BAR, -0.8 * BAR, cut_off=0.2, clearance=0.07, release=0.95, compression=0.2, exponent=1.135
+)
 COMPRESSOR = Compressor(0.0, 6 * BAR, clearance=0.06, exponent=1.3)
-OTTO = Otto(-0.1 * BAR, 35 * BAR, clearance=1 / 7, exhaust=0.05 * BAR, exponent=1.32, expansion_exponent=1.28)
+OTTO = Otto(
+    -0.1 * BAR,
+    35 * BAR,
+    clearance=1 / 7,
+    exhaust=0.05 * BAR,
+    exponent=1.32,
+    expansion_exponent=1.28,
+)
 DIESEL = Diesel(0.0, cut_off=0.08, clearance=1 / 14, exponent=1.36, expansion_exponent=1.3)
-MIXED = Diesel(0.0, cut_off=0.05, clearance=1 / 14, peak=60 * BAR, exponent=1.36, expansion_exponent=1.3)
+MIXED = Diesel(
+    0.0, cut_off=0.05, clearance=1 / 14, peak=60 * BAR, exponent=1.36, expansion_exponent=1.3
+)
 CARDS: list[IdealCard] = [STEAM, WET, COMPRESSOR, OTTO, DIESEL, MIXED]
 
 
-def cylinder(card: Any, cycle: str = "two-stroke", absolute: bool = False, **more: Any) -> CylinderForces:
+def cylinder(
+    card: Any, cycle: str = "two-stroke", absolute: bool = False, **more: Any
+) -> CylinderForces:
     own = Cylinder(
-        SliderCrank(0.1, 0.45), pistons=(Piston(0.16, indicator=Indicator(card, absolute=absolute)),), **more
+        SliderCrank(0.1, 0.45),
+        pistons=(Piston(0.16, indicator=Indicator(card, absolute=absolute)),),
+        **more,
     )
     return CylinderForces(Machine((own,), speed=5.0, cycle=cycle), own)
 
@@ -93,7 +110,9 @@ def test_the_forces_do_the_work_of_the_card(card: IdealCard) -> None:
 def _exchange(card: IdealCard) -> float:
     """Area of the gas exchange of a four-stroke engine."""
     exhaust = getattr(card, "exhaust", None)
-    return getattr(card, "intake") - exhaust if isinstance(card, (Otto, Diesel)) and exhaust is not None else 0.0  # noqa: B009
+    return (
+        card.intake - exhaust if isinstance(card, (Otto, Diesel)) and exhaust is not None else 0.0
+    )
 
 
 def test_corners_of_the_diesel_card() -> None:
@@ -117,7 +136,9 @@ def test_given_points_joined_polytropically() -> None:
     z = [0.0, 0.2, 0.55, 1.0]
     high = [(x, 12.0 * (c / (c + x)) ** n) for x in z]
     low = [(x, 3.0 * (c / (c + x)) ** n) for x in z]
-    card = Card.from_keys(unit=(BAR, 1), expansion=high, compression=low, interpolate="polytropic", clearance=c)
+    card = Card.from_keys(
+        unit=(BAR, 1), expansion=high, compression=low, interpolate="polytropic", clearance=c
+    )
     forces = cylinder(card, absolute=True)
     area = 9 * BAR * c * (1 - (c / (1 + c)) ** (n - 1)) / (n - 1)
     assert forces.mean_pressure == pytest.approx(area, rel=1e-14)

@@ -37,31 +37,54 @@ def test_of_a_swing_what_energy_alone_gives() -> None:
     found = figures("{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}")
     omega = 10 * math.pi
     assert found["delta"] == pytest.approx(20e3 / (500 * omega**2), rel=1e-15)
-    assert 250 * (found["omega_max"] ** 2 - found["omega_min"] ** 2) == pytest.approx(20e3, rel=1e-12)
+    assert 250 * (found["omega_max"] ** 2 - found["omega_min"] ** 2) == pytest.approx(
+        20e3, rel=1e-12
+    )
     assert (found["omega_max"] + found["omega_min"]) / 2 == pytest.approx(omega, rel=1e-15)
-    assert not {"M_mean", "M_max", "E_max", "phi_crossing", "power_shaft", "energy_fluctuation"} & found.keys()
+    assert (
+        not {"M_mean", "M_max", "E_max", "phi_crossing", "power_shaft", "energy_fluctuation"}
+        & found.keys()
+    )
 
 
 def test_a_coefficient_is_of_the_work_of_the_cycle() -> None:
     effort = "effort: {mean: 2 kN m, coefficient: 0.3}"
-    for cycle, turns in (("cycle: two-stroke", 1), ("cycle: four-stroke", 2), ("cycle_turns: 5", 5)):
-        found = figures(f"{{speed: 300 rpm, {cycle}, {effort}, efficiency: 0.8, flywheel: {{fluctuation: 1/50}}}}")
+    for cycle, turns in (
+        ("cycle: two-stroke", 1),
+        ("cycle: four-stroke", 2),
+        ("cycle_turns: 5", 5),
+    ):
+        found = figures(
+            f"{{speed: 300 rpm, {cycle}, {effort}, efficiency: 0.8, flywheel: {{fluctuation: 1/50}}}}"
+        )
         assert found["dE"] == pytest.approx(0.8 * 0.3 * 2e3 * 2 * math.pi * turns)
         assert found["J"] == pytest.approx(50 * found["dE"] / (10 * math.pi) ** 2)
         assert found["delta"] == pytest.approx(0.02)
     bare = "effort: {unit: kN m, mean: 2, coefficient: 0.3}"
-    assert figures(f"{{speed: 300 rpm, {bare}}}")["dE"] == figures(f"{{speed: 300 rpm, {effort}}}")["dE"]
+    assert (
+        figures(f"{{speed: 300 rpm, {bare}}}")["dE"]
+        == figures(f"{{speed: 300 rpm, {effort}}}")["dE"]
+    )
 
 
 def test_swings_in_a_sweep_are_those_of_single_machines() -> None:
     text = "{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}"
-    swings, speeds = ["10 kJ", "10 kJ", "20 kJ", "9000 kJ"], ["250 rpm", "300 rpm", "300 rpm", "300 rpm"]
-    rows = kurbel.sweep(
-        kurbel.loads(text), {"effort.swing": swings, "speed": speeds}, columns=["dE", "delta", "omega_max"]
+    swings, speeds = (
+        ["10 kJ", "10 kJ", "20 kJ", "9000 kJ"],
+        ["250 rpm", "300 rpm", "300 rpm", "300 rpm"],
     )
-    alone = [figures(text, f"effort.swing={one}", f"speed={n}") for one, n in zip(swings[:3], speeds)]
+    rows = kurbel.sweep(
+        kurbel.loads(text),
+        {"effort.swing": swings, "speed": speeds},
+        columns=["dE", "delta", "omega_max"],
+    )
+    alone = [
+        figures(text, f"effort.swing={one}", f"speed={n}") for one, n in zip(swings[:3], speeds)
+    ]
     for id in ("dE", "delta", "omega_max"):
-        assert np.asarray(rows[id])[:3].tolist() == pytest.approx([one[id] for one in alone], rel=1e-15)
+        assert np.asarray(rows[id])[:3].tolist() == pytest.approx(
+            [one[id] for one in alone], rel=1e-15
+        )
     assert np.isnan(np.asarray(rows["delta"])[3])  # it stalls
 
 
@@ -82,7 +105,9 @@ def test_a_load_by_harmonics_is_that_by_many_points() -> None:
 
 @pytest.mark.parametrize("turns", [1, 3, 4])
 def test_what_repeats_sooner_is_the_same_in_a_longer_cycle(turns: int) -> None:
-    usual, longer = (Case(kurbel.loads(CYLINDERS, overrides=(f"cycle_turns={n}",))) for n in (1, turns))
+    usual, longer = (
+        Case(kurbel.loads(CYLINDERS, overrides=(f"cycle_turns={n}",))) for n in (1, turns)
+    )
     times = math.lcm(2, turns) // 2
     for id, one in usual.flywheel.key_values().items():
         other = longer.flywheel[id].value
@@ -92,18 +117,24 @@ def test_what_repeats_sooner_is_the_same_in_a_longer_cycle(turns: int) -> None:
         else:
             factor = times if id == "work_shaft" else 1 / times if id == "energy_fluctuation" else 1
             assert other == pytest.approx(factor * one.value, rel=1e-9, abs=1e-9), id
-    assert longer.torsion["M_vibratory"].value == pytest.approx(usual.torsion["M_vibratory"].value, rel=1e-9)
+    assert longer.torsion["M_vibratory"].value == pytest.approx(
+        usual.torsion["M_vibratory"].value, rel=1e-9
+    )
     orders, waves = (case.harmonics().machine for case in (usual, longer))
     found = dict(zip(np.round(waves.orders, 9), np.abs(waves.whole)))
     for order, amplitude in zip(orders.orders, np.abs(orders.whole)):
-        assert found[round(order, 9)] == pytest.approx(amplitude, abs=1e-9 * np.abs(orders.whole).max())
+        assert found[round(order, 9)] == pytest.approx(
+            amplitude, abs=1e-9 * np.abs(orders.whole).max()
+        )
 
 
 def test_a_press_that_works_once_in_three_turns() -> None:
     """A rectangle of work against a constant drive: ΔE = M_p φ_p (1 − φ_p/6π), whatever the phase."""
     press = "load: {unit: N m, points: [[0, 0], [400, 0], [400, 9000], [460, 9000], [460, 0], [1080, 0]]}"
     drive = "effort: {unit: N m, points: [[0, 500], [360, 500]]}"
-    found = figures(f"{{speed: 1 Hz, cycle_turns: 3, {press}, {drive}, flywheel: {{inertia: 900 kg m2}}}}")
+    found = figures(
+        f"{{speed: 1 Hz, cycle_turns: 3, {press}, {drive}, flywheel: {{inertia: 900 kg m2}}}}"
+    )
     angle = math.radians(60)
     assert found["dE"] == pytest.approx(9000 * angle * (1 - angle / (6 * math.pi)))
     assert found["work_shaft"] == pytest.approx(500 * 6 * math.pi)

@@ -24,7 +24,9 @@ pressures = st.floats(-0.9, 30, allow_nan=False).map(lambda p: round(p, 3))
 @st.composite
 def cards(draw: st.DrawFn) -> Card:
     def line(first: int, last: int) -> list[tuple[float, float]]:
-        inner = sorted(draw(st.lists(st.integers(1, 99), max_size=5, unique=True)), reverse=first > last)
+        inner = sorted(
+            draw(st.lists(st.integers(1, 99), max_size=5, unique=True)), reverse=first > last
+        )
         return [(x / 100, draw(pressures)) for x in (first * 100, *inner, last * 100)]
 
     return Card.from_keys(unit=(1e5, 1), expansion=line(0, 1), compression=line(1, 0))
@@ -34,7 +36,9 @@ def cards(draw: st.DrawFn) -> Card:
 def machines(draw: st.DrawFn) -> CylinderForces:
     lam = draw(st.floats(0.01, 0.95))
     offset = draw(st.sampled_from([0.0, 0.0, 0.5, -0.8])) * (1 / lam - 1) * 0.3
-    friction = draw(st.sampled_from([None, Friction(0.05), Friction(0.02, Rings(2, 0.01, 2e4, 0.1))]))
+    friction = draw(
+        st.sampled_from([None, Friction(0.05), Friction(0.02, Rings(2, 0.01, 2e4, 0.1))])
+    )
     head, crank = draw(cards()), draw(st.sampled_from([None, STEAM_CARD]))
     return one_cylinder(
         SliderCrank(0.3, 0.3 / lam, offset),
@@ -66,8 +70,12 @@ def test_forces_balance_at_crosshead_and_pin(forces: CylinderForces, degrees: li
     psi = np.radians(state.psi)
     scale = abs(state.P_gas) + abs(state.P_inertia) + abs(rod) + 1e-9
     friction = 0.0 if state.F_friction is None else state.F_friction
-    assert (abs(rod * np.cos(psi) - state.P - friction) <= 1e-14 * scale).all()  # along the stroke line
-    assert (abs(rod * np.sin(psi) - state.N + forces.drive.guide_weight) <= 1e-13 * scale / np.cos(psi)).all()  # across
+    assert (
+        abs(rod * np.cos(psi) - state.P - friction) <= 1e-14 * scale
+    ).all()  # along the stroke line
+    assert (
+        abs(rod * np.sin(psi) - state.N + forces.drive.guide_weight) <= 1e-13 * scale / np.cos(psi)
+    ).all()  # across
     assert (abs(np.hypot(state.D, state.T) - abs(rod)) <= 1e-13 * scale / np.cos(psi)).all()
 
 
@@ -89,7 +97,9 @@ def reversals_of(
     expansion: list[tuple[float, float]], compression: list[tuple[float, float]]
 ) -> tuple[float, ...] | None:
     card = Card.from_keys(unit=(1e5, 1), expansion=expansion, compression=compression)
-    return one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(0.2, indicator=Indicator(card)),)).phi_reversal
+    return one_cylinder(
+        SliderCrank(0.4, 2.0), pistons=(Piston(0.2, indicator=Indicator(card)),)
+    ).phi_reversal
 
 
 def test_druckwechsel() -> None:
@@ -97,16 +107,25 @@ def test_druckwechsel() -> None:
     never = [(1.0, 0.0), (0.0, 0.0)]
     assert reversals_of([(0, 5), (0.5, 5), (1, 0)], never) == ()  # exhausts to the ambient
     assert reversals_of([(0, 5), (0.4, 0), (1, 3)], [(1, 3), (0, 5)]) == ()  # touches zero
-    assert reversals_of([(0, 5), (0.4, 5), (0.4, 0), (0.7, 0), (0.7, 2), (1, 2)], [(1, 2), (0, 5)]) == ()  # + 0 +
+    assert (
+        reversals_of([(0, 5), (0.4, 5), (0.4, 0), (0.7, 0), (0.7, 2), (1, 2)], [(1, 2), (0, 5)])
+        == ()
+    )  # + 0 +
     # + on the outstroke, nothing in the middle, − on the way back: once where − begins, once where + begins
     assert reversals_of([(0, 5), (1, 5)], [(1, -0.5), (0, -0.5)]) == (0.0, 180.0)
-    found = reversals_of([(0, 5), (0.5, 5), (0.5, 0), (1, 0)], [(1, 0), (0.5, 0), (0.5, -0.5), (0, -0.5)])
-    assert found == pytest.approx((0.0, float(360 - SliderCrank(0.4, 2.0).crank_angles_at(0.4, True))), abs=1e-12)
+    found = reversals_of(
+        [(0, 5), (0.5, 5), (0.5, 0), (1, 0)], [(1, 0), (0.5, 0), (0.5, -0.5), (0, -0.5)]
+    )
+    assert found == pytest.approx(
+        (0.0, float(360 - SliderCrank(0.4, 2.0).crank_angles_at(0.4, True))), abs=1e-12
+    )
 
 
 def test_one_sided_values_at_a_jump() -> None:
     """Exhaust opens at the outer dead centre: 2.2 at before it, 1.2 at after it."""
-    forces = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(0.45, indicator=Indicator(STEAM_CARD)),))
+    forces = one_cylinder(
+        SliderCrank(0.4, 2.0), pistons=(Piston(0.45, indicator=Indicator(STEAM_CARD)),)
+    )
     at = np.array([180.0, 180.0])
     before, after = forces.at(at, np.array([179.0, 181.0])).p_head / 98066.5
     assert before == pytest.approx(2.2, rel=1e-14)
@@ -115,7 +134,9 @@ def test_one_sided_values_at_a_jump() -> None:
 
 
 def test_a_vertical_jump_inside_the_stroke_stands_at_its_exact_angle() -> None:
-    card = Card.from_keys(unit=(1e5, 1), expansion=[(0, 8), (0.3, 8), (0.3, 2), (1, 2)], compression=[(1, 0), (0, 0)])
+    card = Card.from_keys(
+        unit=(1e5, 1), expansion=[(0, 8), (0.3, 8), (0.3, 2), (1, 2)], compression=[(1, 0), (0, 0)]
+    )
     forces = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(0.2, indicator=Indicator(card)),))
     # x = 0.3 s of the exact motion: from the triangle of shaft, pin and crosshead
     distance = 0.4 + 2.0 - 0.3 * 0.8
@@ -124,7 +145,9 @@ def test_a_vertical_jump_inside_the_stroke_stands_at_its_exact_angle() -> None:
     assert list(around.p_head) == pytest.approx([8e5, 2e5], rel=1e-12)
     found = forces.extremes_of("T")
     assert found.largest.degrees == pytest.approx(angle, abs=1e-11)
-    assert forces.work == pytest.approx((0.3 * 8e5 + 0.7 * 2e5) * 0.8 * Piston(0.2).head_area, rel=1e-15)
+    assert forces.work == pytest.approx(
+        (0.3 * 8e5 + 0.7 * 2e5) * 0.8 * Piston(0.2).head_area, rel=1e-15
+    )
 
 
 # lists of angles are complete: no sample of a dense scan between two listed angles has the other sign
@@ -149,10 +172,14 @@ def scanned(breaks: np.ndarray, evaluate: Evaluate) -> tuple[np.ndarray, np.ndar
     angles = np.concatenate((degrees, summits), axis=1)
     values = np.concatenate((found, at_summits), axis=1)
     order = np.argsort(angles, axis=1, kind="stable")
-    return np.take_along_axis(angles, order, 1).ravel(), np.take_along_axis(values, order, 1).ravel()
+    return np.take_along_axis(angles, order, 1).ravel(), np.take_along_axis(
+        values, order, 1
+    ).ravel()
 
 
-def wrong_signs(found: np.ndarray, breaks: np.ndarray, evaluate: Evaluate, size: float = 0.0) -> int:
+def wrong_signs(
+    found: np.ndarray, breaks: np.ndarray, evaluate: Evaluate, size: float = 0.0
+) -> int:
     """Count the samples whose sign is not that of the others between the same two listed angles, and false angles."""
     angles, values = scanned(breaks, evaluate)
     clear = np.abs(values) > 1e-12 * max(size, np.abs(values).max())
@@ -168,13 +195,17 @@ def wrong_signs(found: np.ndarray, breaks: np.ndarray, evaluate: Evaluate, size:
 
 
 def force_along(forces: CylinderForces) -> Evaluate:
-    return lambda degrees, within: forces.at(degrees.ravel(), within.ravel()).P.reshape(degrees.shape)
+    return lambda degrees, within: forces.at(degrees.ravel(), within.ravel()).P.reshape(
+        degrees.shape
+    )
 
 
 def missing_reversals(forces: CylinderForces) -> int:
     found, extremes = forces.phi_reversal, forces.extremes_of("P")
     both = extremes.largest.value > 0 > extremes.smallest.value
-    return wrong_signs(np.array(found), forces.breaks, force_along(forces)) + int(bool(found) != both)
+    return wrong_signs(np.array(found), forces.breaks, force_along(forces)) + int(
+        bool(found) != both
+    )
 
 
 def missing_crossings(forces: CylinderForces) -> int:

@@ -57,9 +57,13 @@ def test_steam_does_the_work_of_its_cards_in_any_mechanism(mechanism: Mechanism)
     area = sum(
         (z1 - z0) * (p0 + p1) / 2
         for line in points
-        for (z0, p0), (z1, p1) in zip(zip(line.fractions, line.pressures), zip(line.fractions[1:], line.pressures[1:]))
+        for (z0, p0), (z1, p1) in zip(
+            zip(line.fractions, line.pressures), zip(line.fractions[1:], line.pressures[1:])
+        )
     )
-    assert forces.work == pytest.approx((STEAM.head_area + STEAM.crank_area) * area * mechanism.stroke, rel=1e-13)
+    assert forces.work == pytest.approx(
+        (STEAM.head_area + STEAM.crank_area) * area * mechanism.stroke, rel=1e-13
+    )
     assert forces.energy_residual == pytest.approx(0, abs=2e-14)
     pressures = forces.at(np.array(mechanism.dead_centres()) + 1e-9).p_head
     assert pressures == pytest.approx([9.5 * AT, 1.2 * AT], rel=1e-6)
@@ -70,7 +74,9 @@ def test_the_ram_takes_its_force_times_its_strokes(mechanism: Mechanism) -> None
     forces = solved(mechanism, ram_force=RamForce(5000, 700))
     assert forces.resistance_work == pytest.approx(-5700 * mechanism.stroke, rel=1e-15)
     assert forces.energy_residual == pytest.approx(0, abs=2e-14)
-    assert forces.W * mechanism.crank * 2 * math.pi == pytest.approx(-5700 * mechanism.stroke, rel=1e-14)
+    assert forces.W * mechanism.crank * 2 * math.pi == pytest.approx(
+        -5700 * mechanism.stroke, rel=1e-14
+    )
     assert forces.work is None
 
 
@@ -85,11 +91,17 @@ def test_rings_rub_in_any_mechanism(mechanism: Mechanism) -> None:
 
 def test_guides_and_pin_of_a_scotch_yoke() -> None:
     """The couple of P on the piston rod and on the pin, R sin φ apart, rests on two guides."""
-    forces = solved(ScotchYoke(0.25, guide_length=0.9, pin_diameter=0.05, pin_length=0.06), pistons=(STEAM,))
+    forces = solved(
+        ScotchYoke(0.25, guide_length=0.9, pin_diameter=0.05, pin_length=0.06), pistons=(STEAM,)
+    )
     state = forces.at(DENSE)
-    assert state["N_pair"] * 0.9 == pytest.approx(state.P * 0.25 * np.sin(np.radians(DENSE)), rel=1e-12, abs=1e-9)
+    assert state["N_pair"] * 0.9 == pytest.approx(
+        state.P * 0.25 * np.sin(np.radians(DENSE)), rel=1e-12, abs=1e-9
+    )
     assert state["F_pin"] == pytest.approx(state.P, rel=1e-15)
-    force = (9.5 * STEAM.head_area - 1.2 * STEAM.crank_area) * AT  # the same on the return stroke is less
+    force = (
+        9.5 * STEAM.head_area - 1.2 * STEAM.crank_area
+    ) * AT  # the same on the return stroke is less
     assert forces["pin_pressure"].value == pytest.approx(force / (0.05 * 0.06), rel=1e-14)
 
 
@@ -98,7 +110,9 @@ def test_side_force_bends_the_piston_rod_of_a_yoke_frame() -> None:
     state = forces.at(DENSE)
     psi = np.arcsin(np.sin(np.radians(DENSE)) / 3)
     way = 0.4 - 0.1 * np.cos(np.radians(DENSE)) - 0.3 * np.cos(psi)
-    assert state["M_bend"] == pytest.approx(state.P * np.tan(psi) * (0.2 + way), rel=1e-11, abs=1e-9)
+    assert state["M_bend"] == pytest.approx(
+        state.P * np.tan(psi) * (0.2 + way), rel=1e-11, abs=1e-9
+    )
     found = forces.extremes_of("M_bend")
     assert found.largest.value >= state["M_bend"].max()
     assert found.largest.value == pytest.approx(state["M_bend"].max(), rel=1e-3)
@@ -134,7 +148,11 @@ def test_the_slower_swing_works(name: str) -> None:
 def test_inertia_of_a_coupling_rod() -> None:
     """m v²/R, R ch. 14 A."""
     forces = solved(ParallelCrank(0.305, 2.1, 145.0), rpm=240, moment=Moment(9000))
-    assert forces["coupler_inertia"].value == pytest.approx(145 * (0.305 * 8 * math.pi) ** 2 / 0.305, rel=1e-14)
+    assert forces["coupler_inertia"].value == pytest.approx(
+        145 * (0.305 * 8 * math.pi) ** 2 / 0.305, rel=1e-14
+    )
     found = forces.extremes_of("F_coupler")
     assert found.largest.value == pytest.approx(9000 / 0.305, rel=1e-14)
-    assert "coupler_inertia" not in solved(ParallelCrank(0.305, 2.1), moment=Moment(9000)).key_values()
+    assert (
+        "coupler_inertia" not in solved(ParallelCrank(0.305, 2.1), moment=Moment(9000)).key_values()
+    )

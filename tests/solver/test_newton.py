@@ -66,7 +66,11 @@ FAULTS: dict[str, tuple[Any, str, Any]] = {
     "turning of the rod on the pin": (
         State,
         "losses",
-        property(lambda state: LOSSES(state) | {"crank_pin": state.rubbing.at_crank * (1 - state.rod_slope)}),
+        property(
+            lambda state: (
+                LOSSES(state) | {"crank_pin": state.rubbing.at_crank * (1 - state.rod_slope)}
+            )
+        ),
     ),
     "couple of the rod": (State, "rod_couple", property(lambda state: COUPLE(state) * (1 + 1e-6))),
     "radial pull in S at the crank pin": (State, "S_crank", property(more_pull)),

@@ -23,7 +23,16 @@ from machines import STEAM_CARD
 from representative import CONFIGS, few
 from turning_machines import of_points, rectangles
 
-POINTS = [(0, 500), (40, 1500), (40, 900), (120, 200), (200, 300), (200, 1300), (290, 100), (360, 250)]
+POINTS = [
+    (0, 500),
+    (40, 1500),
+    (40, 900),
+    (120, 200),
+    (200, 300),
+    (200, 1300),
+    (290, 100),
+    (360, 250),
+]
 ANGLES = np.array([0.0, 1e-3, 20.0, 39.999, 40.0, 40.001, 100.0, 180.0, 200.0, 233.3, 300.0, 359.9])
 RPM = 60.0
 OMEGA = 2 * math.pi
@@ -44,7 +53,9 @@ def steam(
     **machine: Any,
 ) -> MachineTurning:
     cylinders = tuple(replace(c, name=f"cylinder {i}") for i, c in enumerate((cylinder, *more), 1))
-    return Case(Machine(cylinders, speed=rpm / 60, flywheel=Flywheel(inertia, delta), load=load, **machine)).flywheel
+    return Case(
+        Machine(cylinders, speed=rpm / 60, flywheel=Flywheel(inertia, delta), load=load, **machine)
+    ).flywheel
 
 
 # a fan, M_load = M_m (ω/ω_n)², is linear in the energy: E′ = M(φ) − a E with a = M_m/E_n has a closed solution
@@ -86,7 +97,8 @@ def test_relaxation_from_1e_11_to_1e3_revolutions(relaxation: float) -> None:
     with mpmath.workdps(60):
         mp = mpmath.mp
         exact_mean = sum(
-            (mp.radians(a1) - mp.radians(a0)) * (mp.mpf(m0) + m1) / 2 for (a0, m0), (a1, m1) in pairwise(POINTS)
+            (mp.radians(a1) - mp.radians(a0)) * (mp.mpf(m0) + m1) / 2
+            for (a0, m0), (a1, m1) in pairwise(POINTS)
         ) / (2 * mp.pi)
         nominal = mp.mpf(inertia) / 2 * (2 * mp.pi) ** 2
         for angle, omega in zip(ANGLES, machine.at(ANGLES).omega):
@@ -151,9 +163,15 @@ WISHED = [(None, 1.0), (Load(slip=0.02), 1.0), (Load(slip=0.02), 0.85), (None, 0
 @pytest.mark.parametrize(("load", "efficiency"), few(WISHED, [WISHED[0], WISHED[2]]))
 def test_the_exact_flywheel_meets_the_wish(load: Load | None, efficiency: float) -> None:
     machine = steam(None, load, delta=0.03, efficiency=efficiency)
-    assert machine.J == machine.J_needed == pytest.approx(machine.dE / (0.03 * machine.omega**2), rel=1e-13)
+    assert (
+        machine.J
+        == machine.J_needed
+        == pytest.approx(machine.dE / (0.03 * machine.omega**2), rel=1e-13)
+    )
     assert machine.misses_wanted_delta
-    assert steam(machine.J_exact, load, efficiency=efficiency).delta == pytest.approx(0.03, rel=1e-9)
+    assert steam(machine.J_exact, load, efficiency=efficiency).delta == pytest.approx(
+        0.03, rel=1e-9
+    )
 
 
 # the angular acceleration of the shaft: by Newton's law where the inertia is constant, else as the slope of ω²/2
@@ -176,13 +194,19 @@ def test_over_a_constant_inertia_it_is_the_excess_torque() -> None:
     assert turning.at(np.array([10.0, 100.0, 190.0, 280.0])).alpha == pytest.approx(
         [expected, -expected, expected, -expected], rel=1e-11
     )
-    assert (turning.alpha_max.value, turning.alpha_min.value) == pytest.approx((expected, -expected), rel=1e-11)
+    assert (turning.alpha_max.value, turning.alpha_min.value) == pytest.approx(
+        (expected, -expected), rel=1e-11
+    )
 
 
 @cache
 def _solved(name: str) -> MachineTurning:
     more = {"constant": "", "power law": "load: {power_law: 2}\n", "slip": "load: {slip: 2 %}\n"}
-    return Case(loads(ENGINE + more[name])).flywheel if name in more else Case(load(CONFIGS[name])).flywheel
+    return (
+        Case(loads(ENGINE + more[name])).flywheel
+        if name in more
+        else Case(load(CONFIGS[name])).flywheel
+    )
 
 
 @pytest.mark.parametrize(

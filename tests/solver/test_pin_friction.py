@@ -18,7 +18,9 @@ ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 RUBS = """friction: {crosshead: 0.05, crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm,
            journals: 0.04}
 """
-STRONGLY = RUBS.replace("0.05", "0.2").replace("crosshead: 0.2", "crosshead: 0.3").replace("0.06", "0.2")
+STRONGLY = (
+    RUBS.replace("0.05", "0.2").replace("crosshead: 0.2", "crosshead: 0.3").replace("0.06", "0.2")
+)
 EXACT = ENGINE.replace("share: 0.4", "center_of_gravity: 900 mm, inertia: 60 kg m2")
 PLAIN = """crank: 100 mm
 rod: 250 mm
@@ -38,23 +40,33 @@ def test_constant_piston_force_against_elliptic_integrals() -> None:
     """S = P/cos ψ: ∮ dφ/cos ψ = 4 K(λ²) on crank pin and journals, ∮ |dψ|/cos ψ = 4 artanh λ on the crosshead pin."""
     forces = solved(PLAIN)
     turned, swung = float(4 * ellipk(0.16)), float(4 * atanh(0.4))
-    assert forces.friction_works.get("crank_pin") == pytest.approx(0.05 * 0.030 * FORCE * turned, rel=1e-13)
-    assert forces.friction_works.get("crosshead_pin") == pytest.approx(0.06 * 0.020 * FORCE * swung, rel=1e-13)
-    assert forces.friction_works.get("journals") == pytest.approx(0.03 * 0.035 * FORCE * turned, rel=1e-13)
+    assert forces.friction_works.get("crank_pin") == pytest.approx(
+        0.05 * 0.030 * FORCE * turned, rel=1e-13
+    )
+    assert forces.friction_works.get("crosshead_pin") == pytest.approx(
+        0.06 * 0.020 * FORCE * swung, rel=1e-13
+    )
+    assert forces.friction_works.get("journals") == pytest.approx(
+        0.03 * 0.035 * FORCE * turned, rel=1e-13
+    )
 
 
 def test_shares_are_of_the_work_that_drives() -> None:
     forces = solved(PLAIN)
     work = 2 * FORCE * 0.2
     for name in ("crank_pin", "crosshead_pin", "journals"):
-        assert forces[f"loss_{name}"].value == pytest.approx(forces[f"work_{name}"].value / work, rel=1e-13)
+        assert forces[f"loss_{name}"].value == pytest.approx(
+            forces[f"work_{name}"].value / work, rel=1e-13
+        )
     lost = math.fsum(map(forces.friction_works.get, ("crank_pin", "crosshead_pin", "journals")))
     assert forces.friction_work == pytest.approx(lost, rel=1e-14)
     assert pytest.approx((work - lost) / (0.2 * math.pi), rel=1e-13) == forces.W
 
 
 @pytest.mark.parametrize("degrees", [20.0, 130.0, 200.0, 340.0])
-def test_a_rod_without_mass_is_in_equilibrium_with_friction_at_both_its_ends(degrees: float) -> None:
+def test_a_rod_without_mass_is_in_equilibrium_with_friction_at_both_its_ends(
+    degrees: float,
+) -> None:
     """Forces of both pins and both moments, drawn in the plane, the crank pin at R e^{iφ}."""
     state = solved(PLAIN).at([degrees])
     (along,), (across,) = on_crosshead_pin(state)
@@ -62,14 +74,22 @@ def test_a_rod_without_mass_is_in_equilibrium_with_friction_at_both_its_ends(deg
     turned = np.exp(1j * np.radians(degrees))
     pin = 0.1 * turned
     crosshead = pin.real + math.sqrt(0.25**2 - pin.imag**2)
-    at_crosshead = -along - 1j * (-across)  # of the crosshead on the rod; N > 0 lies on the guide away from +i
+    at_crosshead = -along - 1j * (
+        -across
+    )  # of the crosshead on the rod; N > 0 lies on the guide away from +i
     at_crank = -(-radial + 1j * tangential) * turned  # of the pin on the rod
     assert abs(at_crosshead + at_crank) <= 1e-12 * FORCE
     frictionless = state.without_pin_friction
     assert state.rubbing is not None
-    slope = 0.4 * math.cos(math.radians(degrees)) / math.sqrt(1 - (0.4 * math.sin(math.radians(degrees))) ** 2)
+    slope = (
+        0.4
+        * math.cos(math.radians(degrees))
+        / math.sqrt(1 - (0.4 * math.sin(math.radians(degrees))) ** 2)
+    )
     crank = 0.05 * 0.030 * math.hypot(*(float(one[0]) for one in on_pin(frictionless)))
-    crosshead_pin = 0.06 * 0.020 * math.hypot(*(float(one[0]) for one in on_crosshead_pin(frictionless)))
+    crosshead_pin = (
+        0.06 * 0.020 * math.hypot(*(float(one[0]) for one in on_crosshead_pin(frictionless)))
+    )
     couple = crank + math.copysign(crosshead_pin, slope)
     moment = ((crosshead - pin).conjugate() * at_crosshead).imag + couple
     assert abs(moment) <= 1e-12 * FORCE
@@ -117,20 +137,27 @@ def test_energy_balance_sees_a_fault(name: str, monkeypatch: pytest.MonkeyPatch)
 
 
 def test_journals_bear_the_flywheel_too() -> None:
-    without = ENGINE.replace("  flywheel_mass: 4 t\n", "").replace("  flywheel_position: 450 mm", "#")
+    without = ENGINE.replace("  flywheel_mass: 4 t\n", "").replace(
+        "  flywheel_position: 450 mm", "#"
+    )
     heavy, light = solved(ENGINE + RUBS), solved(without + RUBS)
     assert heavy.friction_works.get("journals") > 1.2 * light.friction_works.get("journals")
-    assert heavy.friction_works.get("crank_pin") == pytest.approx(light.friction_works.get("crank_pin"), rel=1e-13)
+    assert heavy.friction_works.get("crank_pin") == pytest.approx(
+        light.friction_works.get("crank_pin"), rel=1e-13
+    )
 
 
 def test_each_throw_takes_its_own_friction_of_journals() -> None:
     """The mean torque is what both cylinders leave, though only the journals of the last throw carry the flywheel."""
-    head, shaft = f"{ENGINE}\n{RUBS}".split("crankshaft:")[0], ENGINE.split("crankshaft:")[1].split("expect:")[0]
+    head, shaft = (
+        f"{ENGINE}\n{RUBS}".split("crankshaft:")[0],
+        ENGINE.split("crankshaft:")[1].split("expect:")[0],
+    )
     cycle, own = "cycle: four-stroke\nspeed: 200 rpm\n", head.split("speed: 200 rpm\n")[1] + RUBS
     first = "cylinders:\n- axial_position: 0 mm\n  name: one\n" + textwrap.indent(own, "  ")
     second = "- {like: one, name: two, crank_position: 360 deg, axial_position: 800 mm}\n"
     case = Case(loads(f"{cycle}{first}{second}crankshaft:{shaft}"))
-    works = [one.friction_works["journals"] for one in case.cylinders]
+    works = [cylinder.friction_works["journals"] for cylinder in case.cylinders]
     assert works[1] > 1.2 * works[0]
-    left = math.fsum(one.work_left for one in case.cylinders)
+    left = math.fsum(cylinder.work_left for cylinder in case.cylinders)
     assert case.flywheel.M_mean * 4 * math.pi == pytest.approx(left, rel=1e-13)

@@ -40,7 +40,9 @@ def test_rod_between_the_pistons_carries_what_the_tandem_piston_does() -> None:
     assert state.P_between == pytest.approx(expected, rel=1e-13)
     assert state.P_driven == pytest.approx(water, rel=1e-13)
     assert state.P_driving + state.P_driven == pytest.approx(state.P_gas, rel=1e-13)
-    assert kurbel.solve(engine()).cylinders[0].at([40.0]).P_between == pytest.approx(water[:1], rel=1e-13)
+    assert kurbel.solve(engine()).cylinders[0].at([40.0]).P_between == pytest.approx(
+        water[:1], rel=1e-13
+    )
 
 
 def test_work_power_and_mean_pressure_of_every_piston() -> None:
@@ -59,18 +61,24 @@ def test_piston_by_a_rocker_takes_its_own_stroke(ratio: float) -> None:
     assert pump.work == pytest.approx(abs(ratio) * (OUT - BACK), rel=1e-13)
     assert pump.mean_pressure == pytest.approx((OUT - BACK) / (0.8 * (A_HEAD + A_CRANK)), rel=1e-13)
     out, back = (OUT / 0.8, BACK / 0.8) if ratio > 0 else (BACK / 0.8, OUT / 0.8)
-    assert cylinder.at([60.0, 300.0]).P_driven == pytest.approx([ratio * out, ratio * back], rel=1e-13)
+    assert cylinder.at([60.0, 300.0]).P_driven == pytest.approx(
+        [ratio * out, ratio * back], rel=1e-13
+    )
     assert abs(cylinder.energy_residual) < 1e-13
     assert cylinder.at([60.0]).P_between is None
 
 
 def test_sweeps_have_each_piston_and_levers_of_both_signs() -> None:
     ratios = [0.5, -0.5, 1.0, -1.0, 2.0, -2.0]
-    found = kurbel.sweep(engine(), {"tandem.0.lever_ratio": ratios}, ["pump.work", "piston.work", "T_max"])
-    alone = [kurbel.solve(engine(str(one))).cylinders[0] for one in ratios]
+    found = kurbel.sweep(
+        engine(), {"tandem.0.lever_ratio": ratios}, ["pump.work", "piston.work", "T_max"]
+    )
+    alone = [kurbel.solve(engine(str(ratio))).cylinders[0] for ratio in ratios]
     assert found["pump.work"] == pytest.approx([one.pistons[1].work for one in alone], rel=1e-12)
     assert found["T_max"] == pytest.approx([one.T_max.value for one in alone], rel=1e-12)
-    many = kurbel.sweep(engine(more=MASSES), {"masses.piston.1": [50.0, 60.0, 80.0, 90.0]}, ["P_between_max"])
+    many = kurbel.sweep(
+        engine(more=MASSES), {"masses.piston.1": [50.0, 60.0, 80.0, 90.0]}, ["P_between_max"]
+    )
     one = kurbel.solve(engine(more=MASSES)).cylinders[0].P_between_max.value
     assert many["P_between_max"][2] == pytest.approx(one, rel=1e-12)
 

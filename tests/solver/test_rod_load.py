@@ -36,7 +36,11 @@ def rod_load(degrees: mpf) -> mpf:
     phi = degrees * pi / 180
     kappa, lam = sqrt(1 - (crank / rod * sin(phi)) ** 2), crank / rod
     x = crank * (1 - cos(phi)) + rod * (1 - kappa)
-    b = crank * omega**2 * (cos(phi) + lam * (cos(phi) ** 2 - sin(phi) ** 2 + lam**2 * sin(phi) ** 4) / kappa**3)
+    b = (
+        crank
+        * omega**2
+        * (cos(phi) + lam * (cos(phi) ** 2 - sin(phi) ** 2 + lam**2 * sin(phi) ** 4) / kappa**3)
+    )
     back = degrees > 180
     at_head, at_crank = pressure(x / (2 * crank), back), pressure(1 - x / (2 * crank), not back)
     ambient = mpf("1.01325")
@@ -53,15 +57,23 @@ def test_reversal_angles_are_roots_to_1e_9_degrees() -> None:
 @pytest.mark.parametrize("degrees", [0.0, 10.0, 100.0, 200.0, 355.0])
 def test_rod_load_against_mpmath(degrees: float) -> None:
     with mp.workdps(40):
-        assert float(solved(RLO1).at([degrees]).P_rod[0]) == pytest.approx(float(rod_load(mpf(degrees))), rel=1e-13)
+        assert float(solved(RLO1).at([degrees]).P_rod[0]) == pytest.approx(
+            float(rod_load(mpf(degrees))), rel=1e-13
+        )
 
 
-def test_connecting_rod_and_friction_do_not_count_and_at_the_piston_rod_the_crosshead_neither() -> None:
-    forces = solved(RLO1.replace("masses: {other: 150 kg}", PARTS + "\nfriction: {crosshead: 0.05}"))
+def test_connecting_rod_and_friction_do_not_count_and_at_the_piston_rod_the_crosshead_neither() -> (
+    None
+):
+    forces = solved(
+        RLO1.replace("masses: {other: 150 kg}", PARTS + "\nfriction: {crosshead: 0.05}")
+    )
     state = forces.at([0.0, 77.0, 240.0])
     assert state.P_rod == pytest.approx(state.P + 40 * state.b, rel=1e-13)
     assert state.P_piston_rod == pytest.approx(state.P_gas - 100 * state.b, rel=1e-13)
-    assert forces.rod_compression_max.value == pytest.approx(solved(RLO1).rod_compression_max.value, rel=1e-13)
+    assert forces.rod_compression_max.value == pytest.approx(
+        solved(RLO1).rod_compression_max.value, rel=1e-13
+    )
 
 
 def test_weight_counts_where_the_stroke_line_leans() -> None:
@@ -114,5 +126,13 @@ def test_a_motored_engine_is_no_compressor() -> None:
     """Its gas work is negative, as a compressor's, but nobody judges it by the rod load of compressors."""
     forces = Case(loads(f"{MOTORED}masses: {{piston: 3 kg}}\n")).cylinders[0]
     assert forces.work < 0
-    assert [one for one in cylinder_warnings(forces) if "rod load" in one] == []
-    assert [one for one in cylinder_warnings(Case(loads(ALWAYS_PRESSED)).cylinders[0]) if "rod load" in one]
+    assert [
+        cylinder_warning
+        for cylinder_warning in cylinder_warnings(forces)
+        if "rod load" in cylinder_warning
+    ] == []
+    assert [
+        cylinder_warning
+        for cylinder_warning in cylinder_warnings(Case(loads(ALWAYS_PRESSED)).cylinders[0])
+        if "rod load" in cylinder_warning
+    ]

@@ -21,7 +21,9 @@ WEIGHT = 100 * 9.80665
 def case(rotation: str = "", out: str = "3 bar", back: str = "0 bar", **changed: str) -> Case:
     text = ENGINE.replace("EXPANSION", out).replace("COMPRESSION", back)
     for old, new in changed.items():
-        text = "\n".join(f"{old}: {new}" if line.startswith(f"{old}:") else line for line in text.splitlines())
+        text = "\n".join(
+            f"{old}: {new}" if line.startswith(f"{old}:") else line for line in text.splitlines()
+        )
     return Case(loads(f"{text}\nrotation: {rotation}" if rotation else text))
 
 
@@ -30,12 +32,15 @@ def test_under_is_the_mirror_image(inclination: float) -> None:
     """The weight leaves the side on which an engine presses: N less twice its share; P, T and M stay."""
     phi = np.arange(0.0, 360.0, 5.0)
     over, under = (
-        case(rotation, inclination=f"{inclination} deg").cylinders[0].at(phi) for rotation in ("over", "under")
+        case(rotation, inclination=f"{inclination} deg").cylinders[0].at(phi)
+        for rotation in ("over", "under")
     )
     share = WEIGHT * np.cos(np.radians(inclination))
     assert pytest.approx(np.full(72, 2 * share), abs=1e-9) == over.N - under.N
     for column in ("P", "T", "M", "S"):
-        assert getattr(under, column) == pytest.approx(getattr(over, column), rel=1e-13, abs=1e-9), column
+        assert getattr(under, column) == pytest.approx(
+            getattr(over, column), rel=1e-13, abs=1e-9
+        ), column
 
 
 def test_where_it_lifts() -> None:
@@ -58,7 +63,9 @@ def test_guide_pressure_and_wear() -> None:
     at = forces.at(phi)
     np.testing.assert_allclose(at.p_guide, abs(at.N) / 0.08, rtol=1e-15)
     np.testing.assert_allclose(at.wear, 0.1 * abs(at.N * at.c), rtol=1e-12)
-    assert at.wear.mean() * 1.0 == pytest.approx(forces.friction_works["crosshead"], rel=1e-5)  # one turn a second
+    assert at.wear.mean() * 1.0 == pytest.approx(
+        forces.friction_works["crosshead"], rel=1e-5
+    )  # one turn a second
     assert at.p_guide.max() == pytest.approx(forces.p_guide_max.value, rel=1e-6)
     assert forces.wear_max.value == pytest.approx(at.wear.max(), rel=1e-7)
     assert forces.wear_max.degrees == pytest.approx(phi[at.wear.argmax()], abs=0.1)

@@ -40,7 +40,9 @@ def test_two_discs_on_a_heavy_tube() -> None:
     assert line.chain.segment_inertias[0] == pytest.approx(10.268423954729565, rel=1e-15)
     massless = shaft(DISC, f"{TUBE}, length: 3600 mm, density: 0 kg/m3", DISC)
     assert frequencies(massless) == pytest.approx([915.7388089530182], rel=1e-15)
-    by_stiffness = shaft(DISC, f"stiffness: {float(massless.chain.stiffnesses[0])!r} N m/rad, {TUBE}", DISC)
+    by_stiffness = shaft(
+        DISC, f"stiffness: {float(massless.chain.stiffnesses[0])!r} N m/rad, {TUBE}", DISC
+    )
     assert by_stiffness.modes.omegas.tolist() == massless.modes.omegas.tolist()
 
 
@@ -57,7 +59,9 @@ def test_a_divided_shaft_is_the_whole_one() -> None:
 
 def test_friswell_9_9() -> None:
     """Friswell et al., Dynamics of Rotating Machines, ex. 9.9: 50 elements give 1.9106, 3.8232, 5.7394, 7.6613 Hz."""
-    piece = "diameter: 780 mm, bore: 650 mm, length: 200 m, shear_modulus: 75 GPa, density: 8000 kg/m3"
+    piece = (
+        "diameter: 780 mm, bore: 650 mm, length: 200 m, shear_modulus: 75 GPa, density: 8000 kg/m3"
+    )
     line = shaft("inertia: 200 kg m2", piece, piece, piece, piece, "inertia: 10 kg m2")
     exact = [1.9103322936176652, 3.820664759125108, 5.73099756835631, 7.64133089303371]
     assert frequencies(line) == pytest.approx(exact, rel=1e-14)
@@ -102,10 +106,10 @@ def test_forced_vibration_of_a_long_shaft() -> None:
     assert frequencies(line) == pytest.approx([33.86741274565363, 158.33386479091828], rel=1e-15)
     wanted = [1.0, 0.15769556989761205, -0.16748373836631944]
     assert line.holzer(1).angles == pytest.approx(wanted, rel=1e-13)
-    assert [one.M_vibratory for one in line.segments] == pytest.approx(
+    assert [segment.M_vibratory for segment in line.segments] == pytest.approx(
         [1590.3757978235722, 1617.9727489105662], rel=1e-11
     )
-    assert [one.tau_vibratory for one in line.segments] == pytest.approx(
+    assert [segment.tau_vibratory for segment in line.segments] == pytest.approx(
         [37498691.79219827, 24862876.212961238], rel=1e-11
     )
     assert line.vibration_loss == pytest.approx(99.18127790047033, rel=1e-11)
@@ -114,7 +118,9 @@ def test_forced_vibration_of_a_long_shaft() -> None:
             "length: 1.6 m", "length: 1.6 m, density: 0 kg/m3"
         )
     )
-    assert [one.M_vibratory for one in massless.segments] == pytest.approx([1532.5469, 1558.4285], rel=1e-7)
+    assert [segment.M_vibratory for segment in massless.segments] == pytest.approx(
+        [1532.5469, 1558.4285], rel=1e-7
+    )
     assert massless.vibration_loss == pytest.approx(92.54445291532, rel=1e-11)
 
 
@@ -129,18 +135,30 @@ def test_every_order_of_a_long_shaft_by_transfer_matrices() -> None:
         if not driving.any():
             continue
         with mpmath.workdps(40):
-            state, places = mpmath.matrix([[1, 0], [0, 0]]), []  # by the first angle, and a constant part
+            state, places = (
+                mpmath.matrix([[1, 0], [0, 0]]),
+                [],
+            )  # by the first angle, and a constant part
             for mass in range(3):
-                own = omega**2 * mpmath.mpf(float(chain.inertias[mass])) - 1j * omega * float(chain.mass_damping[mass])
+                own = omega**2 * mpmath.mpf(float(chain.inertias[mass])) - 1j * omega * float(
+                    chain.mass_damping[mass]
+                )
                 state[1, 0] += own * state[0, 0]
                 state[1, 1] += own * state[0, 1] + mpmath.mpc(complex(driving[mass]))
                 if mass == 2:
                     break
-                spring = mpmath.mpf(float(chain.stiffnesses[mass])) * (1 + 1j * mpmath.mpf(float(chain.loss[mass])))
-                alpha = omega * mpmath.sqrt(mpmath.mpf(float(chain.segment_inertias[mass])) / spring)
+                spring = mpmath.mpf(float(chain.stiffnesses[mass])) * (
+                    1 + 1j * mpmath.mpf(float(chain.loss[mass]))
+                )
+                alpha = omega * mpmath.sqrt(
+                    mpmath.mpf(float(chain.segment_inertias[mass])) / spring
+                )
                 for share in (0, mpmath.mpf(1) / 2, 1):
                     sin, cos = mpmath.sin(alpha * share), mpmath.cos(alpha * share)
-                    along = mpmath.matrix([[cos, -sin / (spring * alpha)], [spring * alpha * sin, cos]]) * state
+                    along = (
+                        mpmath.matrix([[cos, -sin / (spring * alpha)], [spring * alpha * sin, cos]])
+                        * state
+                    )
                     places.append(along)
                 state = along.copy()
             first = -state[1, 1] / state[1, 0]
@@ -161,7 +179,9 @@ def random_line(draw: np.random.Generator, count: int, held: bool) -> tuple[str,
             # k = G I/l, J_s = ρ I l with I_p = π/32 d⁴ of d = 1 m
             area = math.pi / 32
             modulus, density = stiffness / area, inertia / area
-            items.append(f"{{diameter: 1 m, length: 1 m, shear_modulus: {modulus!r} Pa, density: {density!r} kg/m3}}")
+            items.append(
+                f"{{diameter: 1 m, length: 1 m, shear_modulus: {modulus!r} Pa, density: {density!r} kg/m3}}"
+            )
             figures.append((stiffness, inertia))
         mass = float(10 ** draw.uniform(-2, 1))
         items.append(f"{{inertia: {mass!r} kg m2}}")
@@ -197,7 +217,9 @@ def test_every_frequency_is_a_root_and_none_is_missing(count: int, held: bool) -
             if omega == 0:
                 continue
             with mpmath.workdps(40):
-                exact = mpmath.findroot(left, (omega * (1 - 1e-9), omega * (1 + 1e-9)), tol=1e-30, verify=False)
+                exact = mpmath.findroot(
+                    left, (omega * (1 - 1e-9), omega * (1 + 1e-9)), tol=1e-30, verify=False
+                )
             assert omega == pytest.approx(float(exact), rel=4e-15)
             assert line.modes.holzer(index).residual < 1e-12
             assert index == below(figures, held, omega * (1 - 5e-3))
@@ -219,7 +241,11 @@ def below(figures: list[Any], held: bool, omega: float) -> int:
                 masses[-1] += figure[1] / 80
                 masses.append(figure[1] / 80)
     inertias = np.array(masses)
-    stiffness = np.diag(np.r_[springs, 0.0] + np.r_[0.0, springs]) - np.diag(springs, 1) - np.diag(springs, -1)
+    stiffness = (
+        np.diag(np.r_[springs, 0.0] + np.r_[0.0, springs])
+        - np.diag(springs, 1)
+        - np.diag(springs, -1)
+    )
     scaled = stiffness / np.sqrt(np.outer(inertias, inertias))
     if held:
         scaled = scaled[1:, 1:]
@@ -230,7 +256,9 @@ def test_a_heavy_segment_behind_a_gear() -> None:
     """Stiffness and inertia both go with u²: the wave along the segment is as long as without the gear."""
     plain = shaft(DISC, f"{TUBE}, length: 3600 mm", DISC)
     geared = shaft("inertia: 1e-12 kg m2", "gear: 2", DISC, f"{TUBE}, length: 3600 mm", DISC)
-    assert geared.chain.segment_inertias == pytest.approx(4 * plain.chain.segment_inertias, rel=1e-15)
+    assert geared.chain.segment_inertias == pytest.approx(
+        4 * plain.chain.segment_inertias, rel=1e-15
+    )
     assert frequencies(geared) == pytest.approx(frequencies(plain), rel=1e-11)
 
 

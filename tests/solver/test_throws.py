@@ -180,7 +180,13 @@ OF_FOUR: dict[str, Any] = {
         "B_max": 14501.11600043309,
         "M_B_peak": 402.105250965037,
     },
-    "bearings": [14501.11600043309, 17872.967513718468, 9578.330110398134, 17872.967513718468, 14501.11600043309],
+    "bearings": [
+        14501.11600043309,
+        17872.967513718468,
+        9578.330110398134,
+        17872.967513718468,
+        14501.11600043309,
+    ],
 }
 
 OF_V8: dict[str, Any] = {
@@ -247,7 +253,13 @@ OF_V8: dict[str, Any] = {
         "B_max": 14923.112334660567,
         "M_B_peak": 555.9695899214734,
     },
-    "bearings": [14871.879985174603, 19954.786815049974, 23067.966818313005, 20194.6118648495, 14923.112334660567],
+    "bearings": [
+        14871.879985174603,
+        19954.786815049974,
+        23067.966818313005,
+        20194.6118648495,
+        14923.112334660567,
+    ],
 }
 
 OF_FORKED: dict[str, Any] = {
@@ -284,7 +296,13 @@ OF_FORKED: dict[str, Any] = {
         "B_max": 11442.671940160724,
         "M_B_peak": 793.3782646613755,
     },
-    "bearings": [11442.671940160732, 17996.942689259726, 21071.524763834095, 18366.51712336215, 12268.987613980928],
+    "bearings": [
+        11442.671940160732,
+        17996.942689259726,
+        21071.524763834095,
+        18366.51712336215,
+        12268.987613980928,
+    ],
 }
 
 OF_THREE: dict[str, Any] = {
@@ -377,7 +395,11 @@ def test_figures_of_every_throw(text: str, figures: dict[str, Any]) -> None:
     case = Case(loads(text))
     for part, wanted in figures.items():
         if part == "bearings":
-            loads_of = [bearing.answers["load_max"].value for bearing in case.bearings.parts if not bearing.of_rod]
+            loads_of = [
+                bearing.answers["load_max"].value
+                for bearing in case.bearings.parts
+                if not bearing.of_rod
+            ]
             assert loads_of == pytest.approx(wanted, rel=1e-12)
             continue
         results = case.stress if part == "worst" else case.stress.throws[int(part.split()[1]) - 1]
@@ -414,12 +436,20 @@ def test_the_order_along_the_shaft_counts_not_that_of_the_file() -> None:
 def test_one_throw_of_several_is_that_throw_alone_but_for_the_torque() -> None:
     """Throw 1 of the four carries no torque of others and no flywheel: the single engine without a flywheel."""
     one = (
-        FOUR.replace("count: 4", "count: 1").replace("  firing_order: 1-3-4-2\n", "").replace("  spacing: 96 mm\n", "")
+        FOUR.replace("count: 4", "count: 1")
+        .replace("  firing_order: 1-3-4-2\n", "")
+        .replace("  spacing: 96 mm\n", "")
     )
-    alone = strength(one.replace("  flywheel_mass: 12 kg\n", "").replace("  flywheel_position: 40 mm\n", ""))
+    alone = strength(
+        one.replace("  flywheel_mass: 12 kg\n", "").replace("  flywheel_position: 40 mm\n", "")
+    )
     first = strength(FOUR).throws[0]
     for id, value in alone.answers.items():
-        if id in first.answers and value is not None and not id.startswith(("p_journal", "k_journal")):
+        if (
+            id in first.answers
+            and value is not None
+            and not id.startswith(("p_journal", "k_journal"))
+        ):
             assert figure(first.answers[id]) == pytest.approx(figure(value), rel=1e-12), id
 
 
@@ -455,9 +485,13 @@ def test_cranks_at_both_ends_of_a_shaft() -> None:
     ]
     a, b, f = 0.3, 2.7, -1.1
     # along the shaft from pin 1: bearings at a and b, pin 2 at a + b, flywheel at b + f
-    reaction = -(pins[0] * b + pins[1] * (-a)) / (b - a)  # of the bearing at a, moments about that at b
+    reaction = -(pins[0] * b + pins[1] * (-a)) / (
+        b - a
+    )  # of the bearing at a, moments about that at b
     moment = pins[0] * (b + f) + reaction * (b + f - a)
-    place = next(place for place in first._places(*first._next_to([angle])) if place.part == "journal_B")
+    place = next(
+        place for place in first._places(*first._next_to([angle])) if place.part == "journal_B"
+    )
     section = np.pi * 0.2**3 / 32
     assert place.normal[0] * section == pytest.approx(abs(moment), rel=1e-6)
     torques = [abs(columns.T[0]) * 0.4 for columns in state]
@@ -465,10 +499,14 @@ def test_cranks_at_both_ends_of_a_shaft() -> None:
 
 
 def test_rod_spacing() -> None:
-    with pytest.raises(KurbelError, match="rod_spacing: 44 mm is not less than the length of the pin"):
+    with pytest.raises(
+        KurbelError, match="rod_spacing: 44 mm is not less than the length of the pin"
+    ):
         loads(V8.rstrip() + "\n  rod_spacing: 44 mm\n")
     as_default = strength(V8.rstrip() + "\n  rod_spacing: 22 mm\n")
-    assert figure(as_default.answers["sigma_web_A_max"]) == pytest.approx(OF_V8["worst"]["sigma_web_A_max"], rel=1e-12)
+    assert figure(as_default.answers["sigma_web_A_max"]) == pytest.approx(
+        OF_V8["worst"]["sigma_web_A_max"], rel=1e-12
+    )
 
 
 def test_report_and_limits() -> None:

@@ -24,7 +24,15 @@ def undamped(inertias: list[float], stiffnesses: list[float], ground: str = "") 
     nothing = np.zeros(len(stiffnesses))
     masses = len(inertias)
     joins = row_of_joins(masses, ground)
-    return Chain(np.array(inertias), np.array(stiffnesses), nothing, np.zeros(masses), nothing, joins, nothing)
+    return Chain(
+        np.array(inertias),
+        np.array(stiffnesses),
+        nothing,
+        np.zeros(masses),
+        nothing,
+        joins,
+        nothing,
+    )
 
 
 def at_random(count: int, spread: float, ground: str, seed: int) -> Chain:
@@ -55,7 +63,12 @@ def eigenvalues(chain: Chain) -> list[mpmath.mpf]:
 
 CHAINS = [
     *((count, spread, ground) for count in (2, 8) for spread in (0, 5) for ground in ENDS),
-    *(pytest.param(n, s, g, marks=pytest.mark.slow) for n in (3, 20) for s in (0, 2, 5) for g in ENDS),
+    *(
+        pytest.param(n, s, g, marks=pytest.mark.slow)
+        for n in (3, 20)
+        for s in (0, 2, 5)
+        for g in ENDS
+    ),
     pytest.param(30, 5, "", marks=pytest.mark.slow),
 ]
 
@@ -75,7 +88,9 @@ def test_frequencies_with_all_their_digits(count: int, spread: float, ground: st
 HELD = [(*size, ground) for size in ((2, 0), (9, 1), (30, 0), (30, 3)) for ground in ENDS]
 
 
-@pytest.mark.parametrize(("count", "spread", "ground"), few(HELD, [one for one in HELD if one[:2] != (30, 0)]))
+@pytest.mark.parametrize(
+    ("count", "spread", "ground"), few(HELD, [one for one in HELD if one[:2] != (30, 0)])
+)
 def test_holzer_closes(count: int, spread: float, ground: str) -> None:
     chain = at_random(count, spread, ground, 7)
     modes = Modes(chain)
@@ -87,7 +102,9 @@ def test_holzer_closes(count: int, spread: float, ground: str) -> None:
         left = chain.twists.T @ table.torques - omega**2 * chain.inertias * table.angles
         assert np.abs(left).max() <= 1e-12 * max(largest, 1e-300)
         twists = chain.twists @ table.angles
-        assert twists == pytest.approx(table.torques / chain.stiffnesses, abs=1e-12 * np.abs(table.angles).max())
+        assert twists == pytest.approx(
+            table.torques / chain.stiffnesses, abs=1e-12 * np.abs(table.angles).max()
+        )
         if not ground and mode:
             momentum = chain.inertias * table.angles
             assert abs(momentum.sum()) <= 1e-13 * np.abs(momentum).sum()
@@ -110,12 +127,16 @@ def test_holzer_at_a_frequency(ground: str) -> None:
     modes = Modes(chain)
     natural, mode = holzer_at(chain, modes.omegas[2]), modes.holzer(2)
     assert natural.angles == pytest.approx(mode.angles, rel=1e-9)
-    assert natural.torques == pytest.approx(mode.torques, rel=1e-9, abs=1e-9 * np.abs(mode.torques).max())
+    assert natural.torques == pytest.approx(
+        mode.torques, rel=1e-9, abs=1e-9 * np.abs(mode.torques).max()
+    )
 
     omega = 0.7 * modes.omegas[1] + 3
     table = holzer_at(chain, omega)
     held = ground in ("after", "both")
-    matrix = chain.twists.T @ np.diag(chain.stiffnesses) @ chain.twists - np.diag(omega**2 * chain.inertias)
+    matrix = chain.twists.T @ np.diag(chain.stiffnesses) @ chain.twists - np.diag(
+        omega**2 * chain.inertias
+    )
     sides = matrix @ table.angles
     assert sides[:-1] == pytest.approx(np.zeros(4), abs=1e-9 * np.abs(table.torques).max())
     acting = chain.stiffnesses[-1] * table.residual if held else -table.residual
@@ -155,24 +176,34 @@ def test_every_order_solves_its_equations(count: int, ground: str) -> None:
     found = response(chain, frequencies, torques)
     for place, w in np.ndenumerate(frequencies):
         with mpmath.workdps(40):
-            still, dampers = (mpmath.diag(one.tolist()) for one in (chain.stiffnesses, chain.segment_damping))
+            still, dampers = (
+                mpmath.diag(one.tolist()) for one in (chain.stiffnesses, chain.segment_damping)
+            )
             losses, frequency = mpmath.diag((1 + 1j * chain.loss).tolist()), mpmath.mpf(w)
             twists, jw = mpmath.matrix(chain.twists.tolist()), mpmath.mpc(0, frequency)
-            whole = twists.T * (still * losses + jw * dampers) * twists + jw * mpmath.diag(chain.mass_damping.tolist())
+            whole = twists.T * (still * losses + jw * dampers) * twists + jw * mpmath.diag(
+                chain.mass_damping.tolist()
+            )
             whole -= frequency**2 * mpmath.diag(chain.inertias.tolist())
             sides = mpmath.matrix([complex(one) for one in torques[(slice(None), *place)]])
             exact = mpmath.lu_solve(whole, sides)
         wanted = np.array([complex(one) for one in exact])
-        assert found[(slice(None), *place)] == pytest.approx(wanted, abs=1e-12 * np.abs(wanted).max())
+        assert found[(slice(None), *place)] == pytest.approx(
+            wanted, abs=1e-12 * np.abs(wanted).max()
+        )
 
 
-def machine_of(load: Load | None = None, effort: Any = None, damping: float = 60.0, order: float = 2.4) -> Machine:
+def machine_of(
+    load: Load | None = None, effort: Any = None, damping: float = 60.0, order: float = 2.4
+) -> Machine:
     """Masses of 60 and 40 kg m² on a coupling, whose natural order at 60 rpm is `order`."""
     stiffness = (order * 2 * math.pi) ** 2 / (1 / 60.0 + 1 / 40.0)
     if effort is None:
         effort = Effort(*(tuple(map(float, one)) for one in zip(*POINTS)))
     coupling = Coupling(stiffness, 40.0, damping)
-    return Machine((), effort=effort, speed=1.0, flywheel=Flywheel(60.0), coupling=coupling, load=load)
+    return Machine(
+        (), effort=effort, speed=1.0, flywheel=Flywheel(60.0), coupling=coupling, load=load
+    )
 
 
 @pytest.mark.parametrize(
@@ -213,14 +244,25 @@ def test_two_masses_in_closed_form() -> None:
     """T = k (1 + iη) M/J₁ /(ω_e² (1 + iη) − ω²), ω_e² = k (J₁ + J₂)/(J₁J₂); at resonance with the magnifier 1/η."""
     first, second, stiffness, loss = 3.0, 7.0, 2000.0, 0.02
     resonance = math.sqrt(stiffness * (1 / first + 1 / second)) / (2 * math.pi)
-    parts = (ShaftPart(inertia=first), ShaftPart(stiffness=stiffness, loss_factor=loss), ShaftPart(inertia=second))
+    parts = (
+        ShaftPart(inertia=first),
+        ShaftPart(stiffness=stiffness, loss_factor=loss),
+        ShaftPart(inertia=second),
+    )
     for speed in (0.4 * resonance, resonance / 2, resonance, 3.0 * resonance):
         found = shaft(Harmonics(10.0, ((2.0, 6.0, 8.0),)), speed, *parts)
         square, spring = (4 * math.pi * speed) ** 2, 1 + 1j * loss
-        exact = stiffness * spring * (6 - 8j) / first / ((2 * math.pi * resonance) ** 2 * spring - square)
+        exact = (
+            stiffness
+            * spring
+            * (6 - 8j)
+            / first
+            / ((2 * math.pi * resonance) ** 2 * spring - square)
+        )
         assert found.vibration.torques[0, 0, 1] == pytest.approx(exact, rel=1e-12)
         assert found.vibration_loss == pytest.approx(
-            loss * stiffness * 4 * math.pi * speed * abs(exact / (stiffness * spring)) ** 2 / 2, rel=1e-12
+            loss * stiffness * 4 * math.pi * speed * abs(exact / (stiffness * spring)) ** 2 / 2,
+            rel=1e-12,
         )
     at_resonance = shaft(Harmonics(10.0, ((2.0, 6.0, 8.0),)), resonance / 2, *parts).segments[0]
     static = 10.0 * second / (first + second)
@@ -230,8 +272,15 @@ def test_two_masses_in_closed_form() -> None:
 def test_a_gear_is_the_chain_referred_to_one_shaft() -> None:
     """The torque behind the gear is that of the referred chain over u, its stress that of its own section."""
     effort = Harmonics(10.0, ((1.0, 3.0, 2.0), (3.0, 1.0, -2.0)))
-    behind = (ShaftPart(diameter=0.03, length=0.5, density=0.0, loss_factor=0.05), ShaftPart(inertia=0.4))
-    before = (ShaftPart(inertia=2.0), ShaftPart(stiffness=5e4, loss_factor=0.01), ShaftPart(inertia=0.3))
+    behind = (
+        ShaftPart(diameter=0.03, length=0.5, density=0.0, loss_factor=0.05),
+        ShaftPart(inertia=0.4),
+    )
+    before = (
+        ShaftPart(inertia=2.0),
+        ShaftPart(stiffness=5e4, loss_factor=0.01),
+        ShaftPart(inertia=0.3),
+    )
     geared = shaft(effort, 10.0, *before, ShaftPart(gear=2.5), ShaftPart(inertia=0.1), *behind)
     stiffness = 82e9 * math.pi * 0.03**4 / 32 / 0.5 * 2.5**2
     plain = shaft(
@@ -253,9 +302,13 @@ def test_the_mean_torque_goes_to_the_load() -> None:
     effort, piece = Harmonics(10.0, ((1.0, 3.0, 2.0),)), ShaftPart(stiffness=1e4, damping=1.0)
     masses = [ShaftPart(inertia=1.0), ShaftPart(inertia=2.0, load=True), ShaftPart(inertia=3.0)]
     found = shaft(effort, 5.0, masses[0], piece, masses[1], piece, masses[2])
-    assert [one.M_shaft_mean for one in found.segments] == pytest.approx([10.0, 0.0], abs=1e-14)
+    assert [segment.M_shaft_mean for segment in found.segments] == pytest.approx(
+        [10.0, 0.0], abs=1e-14
+    )
     held = shaft(effort, 5.0, ShaftPart(word="ground"), piece, masses[0], piece, masses[2])
-    assert [one.M_shaft_mean for one in held.segments] == pytest.approx([-10.0, 0.0], abs=1e-14)
+    assert [segment.M_shaft_mean for segment in held.segments] == pytest.approx(
+        [-10.0, 0.0], abs=1e-14
+    )
 
 
 def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
@@ -267,7 +320,9 @@ def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
         sin, cos = mpmath.sin(phi), mpmath.cos(phi)
         return sin + lam * sin * cos / mpmath.sqrt(1 - (lam * sin) ** 2)
 
-    mean = mpmath.quad(lambda phi: slope(phi) ** 2, [0, mpmath.pi / 2, mpmath.pi, 2 * mpmath.pi]) / (2 * mpmath.pi)
+    mean = mpmath.quad(
+        lambda phi: slope(phi) ** 2, [0, mpmath.pi / 2, mpmath.pi, 2 * mpmath.pi]
+    ) / (2 * mpmath.pi)
     each = (90 + 30 + 60 + 60) * crank**2 * mean + 60 * crank**2
     assert found.chain.inertias[0] == pytest.approx(float(900 + 2 * each), rel=1e-13)
 
@@ -282,5 +337,7 @@ def test_a_shaft_held_at_both_ends() -> None:
     before, after = found.segments
     assert (before.name, after.name) == ("ground – mass 1", "mass 1 – ground")
     assert (before.M_shaft_mean, after.M_shaft_mean) == pytest.approx((-60, 20))
-    assert (before.M_vibratory, after.M_vibratory) == pytest.approx((3e4 * swing, 1e4 * swing), rel=1e-9)
+    assert (before.M_vibratory, after.M_vibratory) == pytest.approx(
+        (3e4 * swing, 1e4 * swing), rel=1e-9
+    )
     assert found.natural_frequency == pytest.approx(math.sqrt(4e4 / 2) / (2 * math.pi), rel=1e-14)

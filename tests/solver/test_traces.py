@@ -50,7 +50,9 @@ def trace(step: float, zero: float = 0.0, period: float = 360.0, closed: bool = 
     count = round(period / step)
     angles = np.arange(count + closed) * period / count
     return Measured.from_keys(
-        unit=(BAR, 1), points=list(zip(angles.tolist(), smooth(angles - zero).tolist())), angle_zero=zero
+        unit=(BAR, 1),
+        points=list(zip(angles.tolist(), smooth(angles - zero).tolist())),
+        angle_zero=zero,
     )
 
 
@@ -62,7 +64,9 @@ def solved(
     return CylinderForces(Machine((own,), speed=3.0, cycle=cycle), own)
 
 
-@pytest.mark.parametrize("angles", [np.arange(0.0, 720.5, 0.5), np.array([0.0, 100.0, 300.0, 720.0])])
+@pytest.mark.parametrize(
+    "angles", [np.arange(0.0, 720.5, 0.5), np.array([0.0, 100.0, 300.0, 720.0])]
+)
 def test_a_constant_pressure_does_no_work(angles: Any) -> None:
     """Not even its rounding, by which a brake power would be divided."""
     points = [(angle, 2.3) for angle in angles.tolist()]
@@ -75,7 +79,12 @@ def precise_area() -> float:
     """∮ p dx of the smooth pressure, by scipy's Gauss and Kronrod."""
 
     def torque(phi: float) -> float:
-        p = 6 + 4 * math.cos(phi - 0.4) + 1.5 * math.cos(2 * phi - 0.9) + 0.4 * math.cos(3 * phi - 1.3)
+        p = (
+            6
+            + 4 * math.cos(phi - 0.4)
+            + 1.5 * math.cos(2 * phi - 0.9)
+            + 0.4 * math.cos(3 * phi - 1.3)
+        )
         psi = math.asin(0.2 / 0.9 * math.sin(phi))
         return p * 0.2 * math.sin(phi + psi) / math.cos(psi)
 
@@ -97,14 +106,18 @@ def test_trapezoid_work_of_a_smooth_trace(step: float, closed: bool) -> None:
 def test_angle_zero_shifts_the_trace(zero: float) -> None:
     assert solved(trace(0.5, zero)).work == pytest.approx(solved(trace(0.5)).work or 0, rel=1e-12)
     at = [0.0, 100.25, 359.0]
-    assert solved(trace(0.5, zero)).at(at).p_head == pytest.approx(solved(trace(0.5)).at(at).p_head, rel=1e-4)
+    assert solved(trace(0.5, zero)).at(at).p_head == pytest.approx(
+        solved(trace(0.5)).at(at).p_head, rel=1e-4
+    )
 
 
 def test_angle_zero_is_the_dead_centre_of_an_offset_crank() -> None:
     """The first sample stands at φ_i, where the chamber is smallest."""
     mechanism = SliderCrank(0.2, 0.9, 0.1)
     forces = solved(trace(1.0), mechanism=mechanism)
-    assert forces.at([mechanism.dead_centres()[0]]).p_head[0] == pytest.approx(smooth(0.0) * BAR, rel=1e-12)
+    assert forces.at([mechanism.dead_centres()[0]]).p_head[0] == pytest.approx(
+        smooth(0.0) * BAR, rel=1e-12
+    )
 
 
 def test_straight_over_the_angle_between_samples() -> None:
@@ -145,7 +158,11 @@ def test_every_kink_counts_for_the_extremes() -> None:
     angles = np.arange(7201) / 20
     pressures = smooth(angles) + rng.normal(0, 0.2, 7201)
     points = list(zip(angles.tolist(), pressures.tolist()))
-    forces = solved(Measured.from_keys(unit=(BAR, 1), points=points), masses=Masses(200.0), friction=Friction(0.05))
+    forces = solved(
+        Measured.from_keys(unit=(BAR, 1), points=points),
+        masses=Masses(200.0),
+        friction=Friction(0.05),
+    )
     fine = forces.at(np.arange(0, 72001) / 200)
     for name in ("P", "S", "N", "T"):
         found = forces.extremes_of(name)
@@ -176,7 +193,9 @@ ONE = absolute(ENGINE, FINE)
 TABLE = np.column_stack((FINE, ONE))
 
 
-def machine(folder: Path, table: Any, keys: str = "", top: str = "", cycle: str = "four-stroke") -> Path:
+def machine(
+    folder: Path, table: Any, keys: str = "", top: str = "", cycle: str = "four-stroke"
+) -> Path:
     """A machine file beside a table (n, k) of angles and absolute pressures in bar, all digits of them written."""
     columns_file(folder / "p.csv", table, "%.17g")
     (folder / "m.yaml").write_text(
@@ -197,7 +216,9 @@ def many() -> tuple[Any, Any]:
 
 def in_columns(folder: Path, keys: str = "", **more: Any) -> CylinderForces:
     angles, each = many()
-    return forces(folder, np.column_stack((angles, each.T)), f", pressure_columns: 2-13{keys}", **more)
+    return forces(
+        folder, np.column_stack((angles, each.T)), f", pressure_columns: 2-13{keys}", **more
+    )
 
 
 def test_the_spread_of_many_cycles(tmp_path: Path) -> None:
@@ -216,7 +237,9 @@ def test_the_spread_of_many_cycles(tmp_path: Path) -> None:
         "cycle_worst": 1 + p_i.index(min(p_i)),
     }
     assert {name: found[name].value for name in expected} == pytest.approx(expected, rel=1e-11)
-    assert found["p_max_most"].degrees == pytest.approx(angles[int(np.argmax(each[int(np.argmax(peaks))]))])
+    assert found["p_max_most"].degrees == pytest.approx(
+        angles[int(np.argmax(each[int(np.argmax(peaks))]))]
+    )
 
 
 @pytest.mark.parametrize("lap", [720.0, 360.0, 1e9])
@@ -229,7 +252,9 @@ def test_cycles_one_below_the_other_are_those_of_columns(tmp_path: Path, lap: fl
     by_hand = [indicated(angles, one) * BAR for one in each]
     assert found.indicated.cycles.mean_pressure == pytest.approx(by_hand, rel=1e-12)
     at = np.arange(0.0, 720.0, 7.3)
-    assert found.at(at).p_head == pytest.approx(in_columns(tmp_path).at(at).p_head, rel=1e-12, abs=1e-6)
+    assert found.at(at).p_head == pytest.approx(
+        in_columns(tmp_path).at(at).p_head, rel=1e-12, abs=1e-6
+    )
 
 
 def test_cycles_at_other_angles_each(tmp_path: Path) -> None:
@@ -243,7 +268,10 @@ def test_cycles_at_other_angles_each(tmp_path: Path) -> None:
     by_hand = [indicated(angles, one) * BAR for one in each[:11]]
     assert found["mean_pressure"].value == pytest.approx(statistics.fmean(by_hand), rel=1e-3)
     assert found.drive.own_gas.head is not None  # type: ignore[union-attr]
-    assert any("after lap 23 of 360 deg are left out" in one for one in found.drive.own_gas.head.trace.notes)  # type: ignore
+    assert any(
+        "after lap 23 of 360 deg are left out" in note
+        for note in found.drive.own_gas.head.trace.notes
+    )  # type: ignore
 
 
 def test_uneven_samples_of_each_cycle(tmp_path: Path) -> None:
@@ -251,7 +279,9 @@ def test_uneven_samples_of_each_cycle(tmp_path: Path) -> None:
     angles, each = many()
     kept = np.sort(np.random.default_rng(3).choice(len(angles), 1100, replace=False))
     kept[0] = 0
-    found = forces(tmp_path, np.column_stack((angles[kept], each[:2, kept].T)), ", pressure_columns: 2-3")
+    found = forces(
+        tmp_path, np.column_stack((angles[kept], each[:2, kept].T)), ", pressure_columns: 2-3"
+    )
     assert found.indicated.cycles is not None
     for one, area in zip(each[:2, kept], found.indicated.cycles.mean_pressure):
         assert area == pytest.approx(straight(angles[kept], one, 0.0, 720.0) * BAR, rel=1e-11)
@@ -269,7 +299,9 @@ def straight(angles: Any, pressures: Any, begin: float, end: float) -> float:
     phi = np.radians(at)
     sine = RATIO * np.sin(phi)
     slope = (np.sin(phi) + sine * np.cos(phi) / np.sqrt(1 - sine**2)) / 2
-    return float(np.sum(np.interp(at, around, values) * slope * weights * np.radians(half)[:, None]))
+    return float(
+        np.sum(np.interp(at, around, values) * slope * weights * np.radians(half)[:, None])
+    )
 
 
 def test_gross_and_net(tmp_path: Path) -> None:
@@ -289,7 +321,9 @@ def test_without_a_pumping_loop_there_is_no_pressure_of_it(tmp_path: Path, level
     found = forces(tmp_path, np.column_stack((FINE, one)))
     assert found["mean_pressure_exchange"].value == 0
     assert found["mean_pressure_gross"].value == found["mean_pressure"].value
-    nearly = forces(tmp_path, np.column_stack((FINE, np.where((FINE > 200) & (FINE < 300), one + 1e-9, one))))
+    nearly = forces(
+        tmp_path, np.column_stack((FINE, np.where((FINE > 200) & (FINE < 300), one + 1e-9, one)))
+    )
     assert nearly["mean_pressure_exchange"].value < 0
 
 
@@ -297,7 +331,9 @@ def test_one_cycle_and_each_cycle(tmp_path: Path) -> None:
     angles, each = many()
     file = machine(tmp_path, np.column_stack((angles, each.T)), ", pressure_columns: 2-13")
     runner = CliRunner()
-    told = json.loads(runner.invoke(kurbel, ["forces", str(file), "--cycle", "7", "-f", "json"]).stdout)
+    told = json.loads(
+        runner.invoke(kurbel, ["forces", str(file), "--cycle", "7", "-f", "json"]).stdout
+    )
     values = {one["id"]: one["value"] for one in told["cylinders"][0]["key_values"]}
     assert values["mean_pressure"] == pytest.approx(indicated(angles, each[6]) * BAR, rel=1e-12)
     assert "cycles_measured" not in values
@@ -316,13 +352,19 @@ def test_one_cycle_and_each_cycle(tmp_path: Path) -> None:
     [
         (13, ["--cycle", "13"], "--cycle 13: there are 12 cycles, counted from 1"),
         (13, ["--cycle", "0"], "0 is not in the range"),
-        (13, ["--each-cycle", "--columns", "T"], "--each-cycle has no table over the angle; leave out --columns"),
+        (
+            13,
+            ["--each-cycle", "--columns", "T"],
+            "--each-cycle has no table over the angle; leave out --columns",
+        ),
         (13, ["--each-cycle", "--cycle", "3"], "leave out --cycle"),
         (2, ["--cycle", "1"], "no trace of this machine has several cycles; leave it out"),
         (2, ["--each-cycle"], "no trace of this machine has several cycles; leave it out"),
     ],
 )
-def test_cycles_that_are_not_there(tmp_path: Path, columns: int, options: list[str], said: str) -> None:
+def test_cycles_that_are_not_there(
+    tmp_path: Path, columns: int, options: list[str], said: str
+) -> None:
     angles, each = many()
     file = machine(tmp_path, np.column_stack((angles, each.T)), f", pressure_columns: 2-{columns}")
     ran = run("forces", file, *options)
@@ -336,7 +378,9 @@ def test_exponents_are_those_of_the_lines(tmp_path: Path) -> None:
     assert found["n_compression"].value == pytest.approx(1.33, abs=1e-9)
     assert found["n_expansion"].value == pytest.approx(1.33, abs=2e-3)
     assert found["V_clearance"].value == pytest.approx(AREA * STROKE / 14, rel=1e-12)
-    ratio = forces(tmp_path, np.column_stack((FINE, absolute(engine, FINE))), ", compression_ratio: 15")
+    ratio = forces(
+        tmp_path, np.column_stack((FINE, absolute(engine, FINE))), ", compression_ratio: 15"
+    )
     assert ratio["n_compression"].value == pytest.approx(found["n_compression"].value, rel=1e-12)
 
 
@@ -356,7 +400,9 @@ def test_volume_over_pressure_is_the_work(tmp_path: Path) -> None:
 
 def test_largest_rise_of_pressure(tmp_path: Path) -> None:
     found = forces(tmp_path, TABLE)["p_rise_max"]
-    rises = np.roll(ONE, -2) - ONE  # over 1 deg, between samples; between them the chord is a mean of two
+    rises = (
+        np.roll(ONE, -2) - ONE
+    )  # over 1 deg, between samples; between them the chord is a mean of two
     assert found.value == pytest.approx(float(rises.max()) * BAR, rel=1e-12)
     assert found.degrees == pytest.approx((float(FINE[int(np.argmax(rises))]) + 0.5) % 720)
 
@@ -369,7 +415,9 @@ def test_brake_and_friction(tmp_path: Path) -> None:
         case = Case(load(file))
         for results in (case.cylinders[0], case.flywheel):
             assert results["mean_pressure_brake"].value == pytest.approx(3600 / swept, rel=1e-12)
-            assert results["mean_pressure_friction"].value == pytest.approx(p_i - 3600 / swept, rel=1e-11)
+            assert results["mean_pressure_friction"].value == pytest.approx(
+                p_i - 3600 / swept, rel=1e-11
+            )
             assert results["eta_m"].value == pytest.approx(3600 / (p_i * swept), rel=1e-12)
 
 
@@ -402,17 +450,25 @@ def test_pegging_lifts_every_cycle(tmp_path: Path) -> None:
     assert level == pytest.approx(window, rel=1e-3)
     expected = (np.interp(at, angles, each[0]) - window + 0.96) * BAR
     assert pegged.at(at).p_head == pytest.approx(expected, rel=1e-9, abs=1e-4)
-    assert pegged["mean_pressure"].value == pytest.approx(indicated(angles, each[0]) * BAR, rel=1e-11)
+    assert pegged["mean_pressure"].value == pytest.approx(
+        indicated(angles, each[0]) * BAR, rel=1e-11
+    )
     assert pegged["p_max_std"].value == pytest.approx(0.0, abs=1e-4)
     ambient = forces(tmp_path, table, f"{keys}, pegging: ambient")
-    assert float(np.mean(ambient.at(np.arange(537.5, 542.6, 0.5)).p_head)) == pytest.approx(101325.0, rel=1e-12)
+    assert float(np.mean(ambient.at(np.arange(537.5, 542.6, 0.5)).p_head)) == pytest.approx(
+        101325.0, rel=1e-12
+    )
 
 
 def test_drift_is_a_line(tmp_path: Path) -> None:
     found = forces(tmp_path, np.column_stack((FINE, ONE + 3 * FINE / 720)), ", drift: linear")
     assert found["mean_pressure"].value == pytest.approx(indicated(FINE, ONE) * BAR, rel=2e-3)
     closed = np.append(FINE, 720.0)
-    known = forces(tmp_path, np.column_stack((closed, absolute(ENGINE, closed) + 3 * closed / 720)), ", drift: linear")
+    known = forces(
+        tmp_path,
+        np.column_stack((closed, absolute(ENGINE, closed) + 3 * closed / 720)),
+        ", drift: linear",
+    )
     assert known["mean_pressure"].value == pytest.approx(indicated(FINE, ONE) * BAR, rel=1e-12)
 
 
@@ -421,7 +477,9 @@ def test_the_dead_centre_of_a_motored_trace(tmp_path: Path, zero: float, noise: 
     """A motored peak 0.7 deg before the dead centre: found within what the note says of its uncertainty."""
     angles = np.arange(0.0, 720.0, 0.2)
     rng = np.random.default_rng(5)
-    peak = absolute(Engine(heat=0.0), angles - zero + 0.7) + noise * rng.standard_normal(len(angles))
+    peak = absolute(Engine(heat=0.0), angles - zero + 0.7) + noise * rng.standard_normal(
+        len(angles)
+    )
     columns_file(tmp_path / "motored.csv", np.column_stack((angles, peak)))
     table = np.column_stack((angles, absolute(ENGINE, angles - zero)))
     file = machine(tmp_path, table, ", angle_zero: {motored: motored.csv, loss_angle: 0.7 deg}")
@@ -437,7 +495,9 @@ def test_the_dead_centre_of_a_motored_trace(tmp_path: Path, zero: float, noise: 
 
 
 @pytest.mark.parametrize(("step", "noise"), few([(0.1, 0.3), (0.5, 0.3), (1.0, 0.3)], [(0.5, 0.3)]))
-def test_noise_is_no_combustion_and_the_stated_uncertainty_covers_it(tmp_path: Path, step: float, noise: float) -> None:
+def test_noise_is_no_combustion_and_the_stated_uncertainty_covers_it(
+    tmp_path: Path, step: float, noise: float
+) -> None:
     """A dead centre at 0.37° under 0.3 bar of noise: no seed is refused, and two in three are within the stated."""
     angles, rng = np.arange(0.0, 720.0, step), np.random.default_rng(1)
     smooth, inside = absolute(Engine(heat=0.0), angles - 0.37), 0

@@ -17,9 +17,16 @@ from kurbel.errors import MachineFileError
 from kurbel.machine.valve import Eccentric, Link, Valve, ValveEnd
 from kurbel.solver.forces import CylinderForces
 
-GEARS: dict[str, Any] = yaml.safe_load(Path(__file__).with_name("valve_gears.yaml").read_text(encoding="utf-8"))
+GEARS: dict[str, Any] = yaml.safe_load(
+    Path(__file__).with_name("valve_gears.yaml").read_text(encoding="utf-8")
+)
 EQUAL_LEADS = GEARS["equal-leads"]["machine"]
-NAMES = [(gear, command) for gear, parts in GEARS.items() for command in parts if command not in ("machine", "columns")]
+NAMES = [
+    (gear, command)
+    for gear, parts in GEARS.items()
+    for command in parts
+    if command not in ("machine", "columns")
+]
 
 
 def with_key(text: str, key: str, value: str) -> str:
@@ -73,7 +80,12 @@ def test_columns_are_those_of_the_independent_calculation(gear: str) -> None:
 
 
 def test_all_figures_are_held() -> None:
-    figures = [parts[command] for parts in GEARS.values() for command in parts if command not in ("machine", "columns")]
+    figures = [
+        parts[command]
+        for parts in GEARS.values()
+        for command in parts
+        if command not in ("machine", "columns")
+    ]
     columns = [values for parts in GEARS.values() for values in parts.get("columns", {}).values()]
     assert sum(map(len, figures)) + sum(map(len, columns)) == 138
 
@@ -120,7 +132,9 @@ def test_more_that_a_valve_cannot_be(change: str, says: str) -> None:
 def test_a_valve_that_is_not_set_and_a_card_without_events_are_refused() -> None:
     with pytest.raises(MachineFileError, match="how is the valve set"):
         kurbel.solve(EQUAL_LEADS.replace("  lead: 3 mm\n", ""))
-    with pytest.raises(MachineFileError, match="'cut_off' is missing; give it here, or the cylinder a 'valve'"):
+    with pytest.raises(
+        MachineFileError, match="'cut_off' is missing; give it here, or the cylinder a 'valve'"
+    ):
         kurbel.solve(EQUAL_LEADS.partition("valve:")[0])
 
 
@@ -128,7 +142,9 @@ def test_a_machine_without_laps_and_lead_neither_expands_nor_compresses() -> Non
     """The engines before the lap: steam is admitted and leaves over the whole strokes."""
     text = changed("zeuner", steam_lap="0 mm", exhaust_lap="0 mm", lead="0 mm")
     names = [
-        f"{event}_{end}" for end in ("head", "crank") for event in ("cut_off", "release", "compression", "admission")
+        f"{event}_{end}"
+        for end in ("head", "crank")
+        for event in ("cut_off", "release", "compression", "admission")
     ]
     assert events(text, *names) == [1, 1, 0, 0] * 2
     area = math.pi / 4 * (2 * 0.35**2 - 0.06**2)
@@ -146,7 +162,7 @@ def test_an_event_is_where_an_edge_of_the_valve_passes_that_of_the_port(seed: in
     E_H, E_C = random.uniform(-3, 4, 2)
     v_H, v_C = random.uniform(0, 5, 2)
     r, length = random.uniform(32, 60), random.uniform(62, 900)
-    inside, rocker = (bool(one) for one in random.integers(0, 2, 2))
+    inside, rocker = (bool(integer) for integer in random.integers(0, 2, 2))
     gear = {
         "eccentricity": f"{r} mm",
         "steam_lap": {"head_end": f"{S_H} mm", "crank_end": f"{S_C} mm"},
@@ -157,7 +173,12 @@ def test_an_event_is_where_an_edge_of_the_valve_passes_that_of_the_port(seed: in
         "reversing_rocker": str(rocker).lower(),
     }
     results = cylinder(yaml.safe_dump({"stroke": "600 mm", "rod": "1500 mm", "valve": gear}))
-    wanted = {"admission": (S_H, -S_C), "cut_off": (S_H, -S_C), "release": (-E_H, E_C), "compression": (-E_H, E_C)}
+    wanted = {
+        "admission": (S_H, -S_C),
+        "cut_off": (S_H, -S_C),
+        "release": (-E_H, E_C),
+        "compression": (-E_H, E_C),
+    }
     for event, edges in wanted.items():
         for end, edge in zip(("head", "crank"), edges):
             degrees = results[f"{event}_{end}"].degrees
@@ -166,7 +187,9 @@ def test_an_event_is_where_an_edge_of_the_valve_passes_that_of_the_port(seed: in
     delta, shift = results["advance"].value, results["valve_shift"].value
     eccentric = kurbel.solve(f"{{crank: {r} mm, rod: {length} mm}}").cylinders[0]
     phi = np.arange(0.0, 360.0, 7.0)
-    if inside == rocker:  # a quarter turn and δ ahead of the crank; the head end opens toward the shaft
+    if (
+        inside == rocker
+    ):  # a quarter turn and δ ahead of the crank; the head end opens toward the shaft
         w = eccentric.at(phi + 90 + delta).x - 1e-3 * r
     else:
         w = 1e-3 * r - eccentric.at(phi - 90 + delta).x
@@ -175,12 +198,12 @@ def test_an_event_is_where_an_edge_of_the_valve_passes_that_of_the_port(seed: in
 
 def test_the_cards_have_the_events_of_their_own_ends() -> None:
     """The same machine with these fractions written into two cards has the same forces."""
-    steam = (
-        "{{admission: 9 at, exhaust: 0.15 at, clearance: 0.06, cut_off: {}, release: {}, compression: {}, lead: {}}}"
-    )
+    steam = "{{admission: 9 at, exhaust: 0.15 at, clearance: 0.06, cut_off: {}, release: {}, compression: {}, lead: {}}}"
     names = ("cut_off", "release", "compression", "admission")
     by_valve = cylinder(EQUAL_LEADS)
-    written = EQUAL_LEADS.partition("indicator:")[0] + "masses: {reciprocating: 200 kg}\nindicator:\n"
+    written = (
+        EQUAL_LEADS.partition("indicator:")[0] + "masses: {reciprocating: 200 kg}\nindicator:\n"
+    )
     for end in ("head", "crank"):
         fractions = (repr(by_valve[f"{name}_{end}"].value) for name in names)
         written += f"  {end}_end: {{steam: {steam.format(*fractions)}}}\n"
@@ -204,14 +227,20 @@ def test_turned_twice_the_valve_is_as_it_was() -> None:
 
 def test_an_eccentric_rod_nearly_as_short_as_the_eccentricity() -> None:
     """Up to l = r the closed form holds."""
-    results = cylinder(changed("equal-leads", eccentric_rod="45.0000001 mm", lead="{head_end: 3 mm, crank_end: 3 mm}"))
+    results = cylinder(
+        changed(
+            "equal-leads", eccentric_rod="45.0000001 mm", lead="{head_end: 3 mm, crank_end: 3 mm}"
+        )
+    )
     degrees = results["cut_off_crank"].degrees
     assert degrees is not None
     assert results.at([degrees]).valve[0] == pytest.approx(-0.022, abs=1e-13)
 
 
 def test_find_names_the_lap_of_a_cut_off() -> None:
-    solutions = kurbel.find(EQUAL_LEADS, {"valve.steam_lap": ("5 mm", "35 mm")}, "cut_off_head = 0.6")
+    solutions = kurbel.find(
+        EQUAL_LEADS, {"valve.steam_lap": ("5 mm", "35 mm")}, "cut_off_head = 0.6"
+    )
     assert solutions.found[0].values[0] == pytest.approx(0.02869349641, rel=1e-9)
 
 
@@ -226,7 +255,15 @@ VARIED = {
     "rod": ["900 mm", "1500 mm", "3000 mm"],
     "speed": ["60 rpm", "90 rpm"],
 }
-ASKED = ["cut_off_head", "compression_crank", "valve_shift", "opening_crank", "steam_speed_max_head", "work", "T_max"]
+ASKED = [
+    "cut_off_head",
+    "compression_crank",
+    "valve_shift",
+    "opening_crank",
+    "steam_speed_max_head",
+    "work",
+    "T_max",
+]
 
 
 @pytest.mark.parametrize("key", VARIED)
@@ -259,7 +296,9 @@ def test_notches_of_a_link_in_a_sweep() -> None:
 
 
 def test_rows_of_a_sweep_that_no_valve_can_have_say_why() -> None:
-    rows = kurbel.sweep(EQUAL_LEADS, {"valve.steam_lap": ["22 mm", "43 mm", "30 mm"]}, ["cut_off_head"])
+    rows = kurbel.sweep(
+        EQUAL_LEADS, {"valve.steam_lap": ["22 mm", "43 mm", "30 mm"]}, ["cut_off_head"]
+    )
     assert np.isnan(rows["cut_off_head"]).tolist() == [False, True, False]
 
 
@@ -336,7 +375,12 @@ def test_a_planted_error_gives_another_figure(
 MISREAD = [
     ("equal-leads", {"exhaust_lap": "-2 mm"}, "release_head", 0.92199),
     ("link-open", {"link.rods": "crossed"}, "compression_head", 0.38603),
-    ("centred", {"travel": "180 mm", "lead": "3 mm", "angle_of_advance": "null"}, "cut_off_head", None),
+    (
+        "centred",
+        {"travel": "180 mm", "lead": "3 mm", "angle_of_advance": "null"},
+        "cut_off_head",
+        None,
+    ),
     ("unequal-laps", {"steam_lap": "24 mm"}, "cut_off_crank", None),
 ]
 

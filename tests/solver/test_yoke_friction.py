@@ -27,7 +27,9 @@ def case(friction: str) -> kurbel.Case:
     return kurbel.solve(kurbel.loads(TEXT + f"friction: {{{friction}}}\n"))
 
 
-def free_body(phi: np.ndarray, constant: float, f_guides: float, f_block: float) -> dict[str, np.ndarray]:
+def free_body(
+    phi: np.ndarray, constant: float, f_guides: float, f_block: float
+) -> dict[str, np.ndarray]:
     """What acts at crank angles in radians: on the pin along and across the stroke, and what the guides take."""
     out = np.where(np.sin(phi) > 0, 1.0, -1.0)
     gas = np.where(out > 0, 4e5, 1e5) * AREA
@@ -72,9 +74,13 @@ def test_constant_force_has_closed_works() -> None:
 
     The block, pressed by P (1 − k sin φ) with k = 2 f R/l: ∫ f_b P (1 − k sin φ) R |cos φ| dφ = 2 f_b P R (1 − k/2).
     """
-    text = TEXT.replace("compression: 1 bar", "compression: 0 bar").replace("masses: {piston: 36 kg}", "")
+    text = TEXT.replace("compression: 1 bar", "compression: 0 bar").replace(
+        "masses: {piston: 36 kg}", ""
+    )
     machine = kurbel.loads(text + "friction: {guides: 0.07, block: 0.09}\n")
     forces, P = kurbel.solve(machine).cylinders[0], 4e5 * AREA
-    assert forces.friction_works["guides"] == pytest.approx(math.pi * 0.07 * P * R**2 / GUIDES, rel=1e-12)
+    assert forces.friction_works["guides"] == pytest.approx(
+        math.pi * 0.07 * P * R**2 / GUIDES, rel=1e-12
+    )
     assert forces.loss_guides == pytest.approx(math.pi * 0.07 * R / (2 * GUIDES), rel=1e-12)
     assert forces.work_block == pytest.approx(2 * 0.09 * P * R * (1 - 0.07 * R / GUIDES), rel=1e-12)

@@ -48,7 +48,10 @@ class Verdict(NamedTuple):
     @property
     def badness(self) -> tuple[bool, float]:
         """What is larger for a worse verdict: failed, and the share of what is allowed."""
-        return not self.passed, -1.0 if self.ulp is None or not self.allowed else self.ulp / self.allowed
+        return (
+            not self.passed,
+            -1.0 if self.ulp is None or not self.allowed else self.ulp / self.allowed,
+        )
 
     @property
     def passed(self) -> bool:
@@ -75,7 +78,9 @@ def fine_line() -> str:
 
 
 def verdicts(
-    cases: list[Probe], compute: Callable[[Machine, str], float | None], loads: Callable[[str], Machine]
+    cases: list[Probe],
+    compute: Callable[[Machine, str], float | None],
+    loads: Callable[[str], Machine],
 ) -> Iterator[Verdict]:
     """Yield the verdict on each case. Any exception except KurbelError is a fault of the program.
 
@@ -107,7 +112,9 @@ def verdicts(
                 passed = missed is not None and missed <= float(case.ulp)
         allowed = None if missed is None else float(case.ulp)
         verdict = "passed" if passed else "FAILED"
-        yield Verdict(case.case, case.asked, expected, observed, verdict, missed, allowed, 1e3 * spent)
+        yield Verdict(
+            case.case, case.asked, expected, observed, verdict, missed, allowed, 1e3 * spent
+        )
 
 
 def _refused(case: Probe, error: KurbelError) -> tuple[str, bool]:
@@ -132,9 +139,14 @@ def exact(machine: Machine, asked: str) -> Number:
     command, _, quantity = asked.partition(" ")
     name, _, at = quantity.partition("@")
     if command != "motion":
-        found, _ = reference(machine, {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}.get(name, "T_max, T_min"))
+        found, _ = reference(
+            machine, {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}.get(name, "T_max, T_min")
+        )
         return found[("T_max", "T_min").index(name)] if isinstance(found, tuple) else found
-    motion, omega = TextbookMotion(machine.cylinders[0].mechanism), 2 * mp.pi * mpf(machine.speed or 0.0)
+    motion, omega = (
+        TextbookMotion(machine.cylinders[0].mechanism),
+        2 * mp.pi * mpf(machine.speed or 0.0),
+    )
     if name == "stroke":
         return motion.stroke
     if name == "c_max":

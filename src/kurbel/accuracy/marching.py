@@ -125,7 +125,9 @@ def runge_kutta(problem: Problem, steps: int, y: Array) -> Course:
         k2 = problem.rate(middle, [v + h / 2 * k for v, k in zip(state, k1)])
         k3 = problem.rate(middle, [v + h / 2 * k for v, k in zip(state, k2)])
         k4 = problem.rate(end, [v + h * k for v, k in zip(state, k3)])
-        state = [v + h / 6 * (a + 2 * b + 2 * c + d) for v, a, b, c, d in zip(state, k1, k2, k3, k4)]
+        state = [
+            v + h / 6 * (a + 2 * b + 2 * c + d) for v, a, b, c, d in zip(state, k1, k2, k3, k4)
+        ]
         rows.append(state)
     return Course(degrees[::2], np.array(rows))
 
@@ -187,10 +189,23 @@ def rivals(problem: Callable[[], Problem]) -> Iterator[tuple[str, str, Callable[
     scipy = scipy_integrate()
     for goal, reach in (("marched", march), ("by shooting", shoot)):
         for steps in _STEPS:
-            yield f"RK4 {goal}", str(steps), partial(_reached, problem, reach, 1e-12, runge_kutta, steps)
+            yield (
+                f"RK4 {goal}",
+                str(steps),
+                partial(_reached, problem, reach, 1e-12, runge_kutta, steps),
+            )
         for method in ("RK45", "DOP853", "Radau", "LSODA") if scipy else ():
             for tolerance in _TOLERANCES if reach is march else (_CLOSE,):
-                run = partial(_reached, problem, reach, tolerance, by_scipy, scipy.solve_ivp, method, tolerance)
+                run = partial(
+                    _reached,
+                    problem,
+                    reach,
+                    tolerance,
+                    by_scipy,
+                    scipy.solve_ivp,
+                    method,
+                    tolerance,
+                )
                 yield f"{method} {goal}", f"{tolerance:.0e}", run
 
 

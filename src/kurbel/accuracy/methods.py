@@ -63,7 +63,11 @@ def roots(function: Function, low: Array, high: Array, parts: int) -> tuple[Arra
 @cache
 def _gauss(count: int) -> tuple[Array, Array]:
     """Return the nodes (count,) on 0 … 1 of Gauss's rule, and their weights; for 0 points 24 in mpmath's numbers."""
-    rule = np.polynomial.legendre.leggauss(count) if count else np.array(GaussLegendre(mp).calc_nodes(4, mp.prec)).T
+    rule = (
+        np.polynomial.legendre.leggauss(count)
+        if count
+        else np.array(GaussLegendre(mp).calc_nodes(4, mp.prec)).T
+    )
     return (1 + rule[0]) / 2, rule[1] / 2
 
 
@@ -98,9 +102,13 @@ def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Fou
     if quantity[0] == "A":
         return radians(whole)
     mean = whole / (edges[-1] - edges[0])
-    crossings, _ = roots(lambda phi, within: function(phi, within) - mean, edges[:-1], edges[1:], count)
+    crossings, _ = roots(
+        lambda phi, within: function(phi, within) - mean, edges[:-1], edges[1:], count
+    )
     cuts = merged(np.append(edges, crossings))
-    heights = np.cumsum(integrals(function, cuts, count) - mean * np.diff(cuts))  # the last is that of the beginning
+    heights = np.cumsum(
+        integrals(function, cuts, count) - mean * np.diff(cuts)
+    )  # the last is that of the beginning
     return radians(heights.max() - heights.min())
 
 

@@ -140,7 +140,11 @@ class ElasticShaft(NamedTuple):
     def rate(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[Number]:
         """Return y′."""
         passed = self.torque(y)
-        return [y[1] - y[2], (torque - passed) / self.first, (passed - self.load.torque(y[2])) / self.second]
+        return [
+            y[1] - y[2],
+            (torque - passed) / self.first,
+            (passed - self.load.torque(y[2])) / self.second,
+        ]
 
     def slopes(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[list[Number]]:
         """Return the derivatives of y′ by y."""
@@ -182,7 +186,9 @@ class Fits:
         piece = np.searchsorted(self.edges, within, side="right") - 1
         low, high = self.edges[piece], self.edges[piece + 1]
         shares = (2 * phi - low - high) / (high - low)
-        return np.stack([chebyshev.chebval(shares, terms[:, piece], tensor=False) for terms in self.series])
+        return np.stack(
+            [chebyshev.chebval(shares, terms[:, piece], tensor=False) for terms in self.series]
+        )
 
 
 class TextbookShaft:
@@ -195,7 +201,9 @@ class TextbookShaft:
         self._book = TextbookMachine(machine, machine.cylinders)
         self.cycle = 360 * machine.revolutions
         self.nominal = 2 * mp.pi * mpf(machine.speed)
-        self._rigid = mpf(machine.flywheel.inertia) + sum(map(turning_inertia, machine.cylinders), mpf(0))
+        self._rigid = mpf(machine.flywheel.inertia) + sum(
+            map(turning_inertia, machine.cylinders), mpf(0)
+        )
         starts = [mpf(angle) for angle in range(0, self.cycle + 1, EVERY)]
         self.edges = merged(np.append(self._book.edges, starts))
 
@@ -217,12 +225,15 @@ class TextbookShaft:
 
     def _torque(self, phi: Number, within: Number) -> Number:
         """Return M in N m at an angle in degrees."""
-        return sum(cylinder.at(phi - place, within - place).M for cylinder, place in self._book.cylinders)
+        return sum(
+            cylinder.at(phi - place, within - place).M for cylinder, place in self._book.cylinders
+        )
 
     def _inertia(self, phi: Number, within: Number) -> Number:
         """Return J(φ) in kg m²."""
         moving = [
-            cylinder.mass * cylinder.motion.at(phi - place).slope ** 2 for cylinder, place in self._book.cylinders
+            cylinder.mass * cylinder.motion.at(phi - place).slope ** 2
+            for cylinder, place in self._book.cylinders
         ]
         return sum(moving, self._rigid)
 
@@ -279,7 +290,9 @@ class Mesh(NamedTuple):
     is_long: Array
 
 
-def periodic(equation: Equation, at: Callable[[Array, Array], Array], edges: Array, count: int) -> Mesh:
+def periodic(
+    equation: Equation, at: Callable[[Array, Array], Array], edges: Array, count: int
+) -> Mesh:
     """Return the periodic solution by collocation at so many nodes, in floats or, by the edges, in mpmath's numbers.
 
     Newton's method over the whole cycle. Its corrections are floats: in mpmath's numbers each gains a dozen digits.
@@ -323,7 +336,9 @@ def periodic(equation: Equation, at: Callable[[Array, Array], Array], edges: Arr
     raise ArithmeticError("no periodic solution is found")
 
 
-def _newton_step(missing: Array, slopes: list[list[Number]], lengths: Array, matrix: Array) -> Array:
+def _newton_step(
+    missing: Array, slopes: list[list[Number]], lengths: Array, matrix: Array
+) -> Array:
     """Return the corrections (unknowns, elements, s) that a linear equation needs, periodic over all elements."""
     unknowns, elements, count = missing.shape
     system = np.zeros((elements, unknowns, count, unknowns, count))
@@ -417,7 +432,9 @@ def _compared(shaft: TextbookShaft, mesh: Mesh) -> SpeedOfShaft:
     return SpeedOfShaft(shaft.nominal * (1 + at_ends), delta, shaft.nominal * (1 + highest), M_K)
 
 
-def _largest(mesh: Mesh, samples: Array, function: Callable[[Sequence[Number], Number, Number], Number]) -> Number:
+def _largest(
+    mesh: Mesh, samples: Array, function: Callable[[Sequence[Number], Number, Number], Number]
+) -> Number:
     """Return the largest value of a function of y, φ and an angle within, near its largest sample (elements, s)."""
     count = len(samples)
     top = int(samples.max(axis=1).argmax())
@@ -425,7 +442,9 @@ def _largest(mesh: Mesh, samples: Array, function: Callable[[Sequence[Number], N
     return max(_largest_on(mesh, number, function) for number in around)
 
 
-def _largest_on(mesh: Mesh, number: int, function: Callable[[Sequence[Number], Number, Number], Number]) -> Number:
+def _largest_on(
+    mesh: Mesh, number: int, function: Callable[[Sequence[Number], Number, Number], Number]
+) -> Number:
     """Return the largest value on one element, on which y is interpolated through its beginning and its nodes."""
     inner, _ = collocation(mesh.y.shape[2] - 1)
     nodes = np.append(mpf(0), inner)

@@ -13,7 +13,15 @@ import numpy as np
 
 from kurbel.accuracy.marching import Marched, Problem, rivals
 from kurbel.accuracy.methods import Number, mp, mpf
-from kurbel.accuracy.shaft import EVERY, MOST, SpeedOfShaft, TextbookShaft, in_floats, speed_of, without_reference
+from kurbel.accuracy.shaft import (
+    EVERY,
+    MOST,
+    SpeedOfShaft,
+    TextbookShaft,
+    in_floats,
+    speed_of,
+    without_reference,
+)
 from kurbel.accuracy.textbook import DIGITS
 from kurbel.accuracy.trials import OWN, timed, watched
 from kurbel.errors import KurbelError
@@ -46,11 +54,15 @@ class SpeedTrial(NamedTuple):
 
 def reference_of(columns: Sequence[str]) -> SpeedOfShaft:
     """Return the reference in the last columns of a line of `stiff.tsv`."""
-    omega, delta, omega_max, M_K = ([mpf(number) for number in column.split()] for column in columns)
+    omega, delta, omega_max, M_K = (
+        [mpf(number) for number in column.split()] for column in columns
+    )
     return SpeedOfShaft(np.array(omega), delta[0], omega_max[0], tuple(M_K))
 
 
-def examined_speed(machine: Machine, columns: Sequence[str], quick: bool) -> tuple[list[SpeedTrial], str]:
+def examined_speed(
+    machine: Machine, columns: Sequence[str], quick: bool
+) -> tuple[list[SpeedTrial], str]:
     """Return the trials of the speed of a machine, or why there are none; columns: of its reference, if it is known."""
     with mp.workdps(DIGITS):
         if why := next(without_reference(machine), ""):
@@ -69,11 +81,17 @@ def speed_by_kurbel(turning: MachineTurning) -> SpeedOfShaft:
     angles = np.arange(EVERY, round(turning.effort.cycle) + 1.0, EVERY)
     line = turning.speed
     assert line is not None
-    M_K = () if turning.elastic is None else tuple(end.value for end in turning.elastic.torque_extremes)
+    M_K = (
+        ()
+        if turning.elastic is None
+        else tuple(end.value for end in turning.elastic.torque_extremes)
+    )
     return SpeedOfShaft(turning.at(angles).omega, line.delta, line.omega_max.value, M_K)
 
 
-def _rows(machine: Machine, shaft: TextbookShaft, truth: SpeedOfShaft, quick: bool) -> list[SpeedTrial]:
+def _rows(
+    machine: Machine, shaft: TextbookShaft, truth: SpeedOfShaft, quick: bool
+) -> list[SpeedTrial]:
     """Return the rows, kurbel's own first: the whole machine computed anew, and with its torque known, as rivals."""
     rows: list[SpeedTrial] = []
 
@@ -83,7 +101,9 @@ def _rows(machine: Machine, shaft: TextbookShaft, truth: SpeedOfShaft, quick: bo
         ratio = median / rows[0].median if rows else 1.0
         evaluations = marched.evaluations
         errors = (omega, delta, omega_max, M_K)
-        rows.append(SpeedTrial(name, points, marched.state, evaluations, *errors, median, least, ratio))
+        rows.append(
+            SpeedTrial(name, points, marched.state, evaluations, *errors, median, least, ratio)
+        )
 
     effort = Case(machine).effort
     own: dict[str, Callable[[], SpeedOfShaft]] = {

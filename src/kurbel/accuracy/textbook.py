@@ -40,7 +40,9 @@ def unknown(machine: Machine, quantity: str) -> Iterator[str]:
             yield f"the {one.mechanism.name}"
         if quantity in "xcb":
             return
-        if not all(isinstance(card, Card) for piston in one.pistons for card in piston.chambers.values()):
+        if not all(
+            isinstance(card, Card) for piston in one.pistons for card in piston.chambers.values()
+        ):
             yield "traces and ideal cards"
         if one.masses and one.masses.connecting_rod and one.masses.connecting_rod.exact:
             yield "a rod given by its centre of gravity"
@@ -75,7 +77,9 @@ class Stance(NamedTuple):
     cos_psi: Number
 
 
-def stance(r: Number, length: Number, e: Number, sin: Number, cos: Number, sqrt: Callable[[Number], Number]) -> Stance:
+def stance(
+    r: Number, length: Number, e: Number, sin: Number, cos: Number, sqrt: Callable[[Number], Number]
+) -> Stance:
     """Return the motion at a crank angle, R 285, 288, 291, of a crank r, a rod and an offset e in m."""
     if math.isinf(length):
         return Stance(r * (1 - cos), r * sin, r * cos, 0 * sin, 0 * sin + 1)
@@ -120,7 +124,10 @@ class Chamber(NamedTuple):
     def points(self, stroke: int) -> list[Point]:
         """Return the card's line on a stroke of the cycle."""
         line = self.card.lines[(stroke - (self.sign < 0)) % len(self.card.lines)]
-        return [(self._turned(mpf(z)), mpf(p) + self.lift) for z, p in zip(line.fractions, line.pressures)]
+        return [
+            (self._turned(mpf(z)), mpf(p) + self.lift)
+            for z, p in zip(line.fractions, line.pressures)
+        ]
 
     def _turned(self, share: Number) -> Number:
         return share if self.sign > 0 else 1 - share
@@ -130,8 +137,12 @@ class Chamber(NamedTuple):
         (begin, p), (end, next_p) = segment
         if self.card.interpolate == "linear":
             return p + (next_p - p) * (share - begin) / (end - begin)
-        volume, first, last = (self._turned(one) + mpf(self.card.clearance) for one in (share, begin, end))
-        return p * (next_p / p) ** (mp.log(volume / first) / mp.log(last / first))  # p V^n is constant
+        volume, first, last = (
+            self._turned(one) + mpf(self.card.clearance) for one in (share, begin, end)
+        )
+        return p * (next_p / p) ** (
+            mp.log(volume / first) / mp.log(last / first)
+        )  # p V^n is constant
 
 
 class Forces(NamedTuple):
@@ -152,15 +163,29 @@ class TextbookCylinder:
     """Forces of one cylinder; edges: of the pieces of its cycle between the corners of its cards."""
 
     def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
-        self.motion, self.turns = TextbookMotion(cylinder.mechanism), CYCLES[machine.cycle_of(cylinder)]
+        self.motion, self.turns = (
+            TextbookMotion(cylinder.mechanism),
+            CYCLES[machine.cycle_of(cylinder)],
+        )
         self.omega, self._ambient = 2 * mp.pi * mpf(machine.speed or 0.0), mpf(machine.ambient)
-        masses, friction, lean = cylinder.masses, cylinder.friction, machine.inclination_of(cylinder)
+        masses, friction, lean = (
+            cylinder.masses,
+            cylinder.friction,
+            machine.inclination_of(cylinder),
+        )
         rod = masses.connecting_rod if masses else None
-        self.mass = mpf(masses.parts if masses else 0.0) + (mpf(rod.mass) * mpf(rod.share) if rod else 0)
-        weight, angle = self.mass * mpf(0 if lean is None else "9.80665"), mp.radians(mpf(lean or 0.0))
+        self.mass = mpf(masses.parts if masses else 0.0) + (
+            mpf(rod.mass) * mpf(rod.share) if rod else 0
+        )
+        weight, angle = (
+            self.mass * mpf(0 if lean is None else "9.80665"),
+            mp.radians(mpf(lean or 0.0)),
+        )
         self._weight, self._side_weight = weight * mp.sin(angle), weight * mp.cos(angle)
 
-        self._crosshead = mpf((friction and cylinder.mechanism.has_rod and friction.crosshead) or 0.0)
+        self._crosshead = mpf(
+            (friction and cylinder.mechanism.has_rod and friction.crosshead) or 0.0
+        )
         self._rings = mpf((friction and friction.constant) or 0.0)
         if friction and (rings := friction.rings):
             surface = rings.count * mp.pi * mpf(cylinder.pistons[0].bore) * mpf(rings.height)
@@ -189,10 +214,22 @@ class TextbookCylinder:
         for stroke in range(2 * self.turns):
             turn, back = divmod(stroke, 2)
             yield self.motion.ends[back] + 360 * turn
-            shares = {share for chamber in self._chambers for share, _ in chamber.points(stroke) if 0 < share < 1}
+            shares = {
+                share
+                for chamber in self._chambers
+                for share, _ in chamber.points(stroke)
+                if 0 < share < 1
+            }
             for share in shares:
-                beyond = np.frompyfunc(lambda phi, _, x=share * self.motion.stroke: self.motion.at(phi).x - x, 2, 1)
-                (angle,), _ = roots(beyond, self.motion.ends[back : back + 1], self.motion.ends[back + 1 :][:1], STEPS)
+                beyond = np.frompyfunc(
+                    lambda phi, _, x=share * self.motion.stroke: self.motion.at(phi).x - x, 2, 1
+                )
+                (angle,), _ = roots(
+                    beyond,
+                    self.motion.ends[back : back + 1],
+                    self.motion.ends[back + 1 :][:1],
+                    STEPS,
+                )
                 yield angle + 360 * turn
 
     def _piece_of(self, within: Number) -> tuple[int, list[tuple[Point, Point]]]:
@@ -200,9 +237,15 @@ class TextbookCylinder:
         inner, outer, _ = self.motion.ends
         since = (within - inner) % (360 * self.turns)
         turn = int(since / 360)
-        back, share = since - 360 * turn > outer - inner, self.motion.at(within).x / self.motion.stroke
+        back, share = (
+            since - 360 * turn > outer - inner,
+            self.motion.at(within).x / self.motion.stroke,
+        )
         lines = (chamber.points(2 * turn + back) for chamber in self._chambers)
-        held = [next(two for two in pairwise(line) if (two[0][0] - share) * (two[1][0] - share) < 0) for line in lines]
+        held = [
+            next(two for two in pairwise(line) if (two[0][0] - share) * (two[1][0] - share) < 0)
+            for line in lines
+        ]
         return -1 if back else 1, held
 
     def at(self, phi: Number, within: Number) -> Forces:
@@ -212,7 +255,9 @@ class TextbookCylinder:
         for chamber, segment in zip(self._chambers, segments):
             gas += chamber.sign * chamber.area * (chamber.pressure(segment, share) - self._ambient)
         push = gas - self.mass * self.omega**2 * motion.curvature + self._weight
-        lift = (push - direction * self._rings) * motion.sin_psi + self._side_weight * motion.cos_psi
+        lift = (
+            push - direction * self._rings
+        ) * motion.sin_psi + self._side_weight * motion.cos_psi
         leaning = motion.cos_psi + direction * mp.sign(lift) * self._crosshead * motion.sin_psi
         friction = -direction * (self._crosshead * abs(lift / leaning) + self._rings)
         torque = (push + friction) * motion.slope
@@ -243,7 +288,9 @@ class TextbookMachine:
     """Cylinders with the places of their cranks; edges: of all pieces of the cycle, at the angles of crank 1."""
 
     def __init__(self, machine: Machine, cylinders: Sequence[Cylinder]) -> None:
-        self.cylinders = [(TextbookCylinder(machine, one), mpf(one.crank_position)) for one in cylinders]
+        self.cylinders = [
+            (TextbookCylinder(machine, one), mpf(one.crank_position)) for one in cylinders
+        ]
         turns = max(one.turns for one, _ in self.cylinders)
         found = [mpf(0), mpf(360 * turns)]
         for one, place in self.cylinders:

@@ -81,7 +81,9 @@ class Saving(NamedTuple):
 # methods: kurbel's own first
 
 
-def examined(machine: Machine, degrees: Array, quick: bool) -> tuple[list[Trial], dict[str, list[str]]]:
+def examined(
+    machine: Machine, degrees: Array, quick: bool
+) -> tuple[list[Trial], dict[str, list[str]]]:
     """Return the trials of a machine, of its motion at these crank angles, and why which quantities are left out."""
     rows: list[Trial] = []
     left_out: dict[str, list[str]] = {}
@@ -114,7 +116,9 @@ def compared(machine: Machine, quantity: str, degrees: Array) -> tuple[Array, It
         truth = [book.at(mpf(float(one)))[order] for one in degrees]
         return np.array(truth), motion_methods(machine, degrees, order)
     found, edges = reference(machine, quantity)
-    return np.atleast_1d(np.array(found, dtype=object)), force_methods(machine, quantity, edges.astype(float))
+    return np.atleast_1d(np.array(found, dtype=object)), force_methods(
+        machine, quantity, edges.astype(float)
+    )
 
 
 def motion_methods(machine: Machine, degrees: Array, order: int) -> Iterator[Method]:
@@ -123,10 +127,19 @@ def motion_methods(machine: Machine, degrees: Array, order: int) -> Iterator[Met
 
     def book(at: Array) -> Stance:
         phi = np.radians(at)
-        return stance(mechanism.crank, mechanism.rod_length, mechanism.offset, np.sin(phi), np.cos(phi), np.sqrt)
+        return stance(
+            mechanism.crank,
+            mechanism.rod_length,
+            mechanism.offset,
+            np.sin(phi),
+            np.cos(phi),
+            np.sqrt,
+        )
 
     def fit(count: int) -> Array:
-        series = np.polynomial.Chebyshev.interpolate(lambda at: book(at).x, count, (0, 360)).deriv(order)
+        series = np.polynomial.Chebyshev.interpolate(lambda at: book(at).x, count, (0, 360)).deriv(
+            order
+        )
         return series(degrees % 360) * math.degrees(1) ** order
 
     own = (mechanism.coordinate, mechanism.slope, mechanism.curvature)[order]
@@ -154,7 +167,10 @@ def force_methods(machine: Machine, quantity: str, edges: Array) -> Iterator[Met
     """Yield methods for what is computed from forces; edges: of smooth pieces in degrees, unknown to kurbel."""
 
     def rival(method: Callable[..., Found], count: int) -> Found:
-        cylinders = [(CylinderForces(machine, one).at, one.crank_position) for one in taking_part(machine, quantity)]
+        cylinders = [
+            (CylinderForces(machine, one).at, one.crank_position)
+            for one in taking_part(machine, quantity)
+        ]
         return method(quantity, partial(needed, quantity, cylinders), edges, count)
 
     points = {"A_i": "closed", "A_f": "Lobatto 16", "ΔE": "closed", "T_max, T_min": "roots of T′"}
@@ -165,7 +181,11 @@ def force_methods(machine: Machine, quantity: str, edges: Array) -> Iterator[Met
     if quantity[0] == "A":
         turns = round((edges[-1] - edges[0]) / 360)
         for count in (36, 360):
-            yield "spreadsheet", f"{count} rows", partial(spreadsheet, machine, quantity, turns, count)
+            yield (
+                "spreadsheet",
+                f"{count} rows",
+                partial(spreadsheet, machine, quantity, turns, count),
+            )
 
 
 def methods_for(quantity: str) -> Iterator[tuple[str, Callable[..., Found], tuple[int, ...]]]:
@@ -206,7 +226,18 @@ def rows_of(quantity: str, truth: Array, methods: Iterator[Method], quick: bool)
         median, least = timed(run, quick)
         own_median = own_median or median
         state = "blow-up" if error is None else "ok"
-        yield Trial(quantity, name, points, state, evaluations, error, ulp, median, least, median / own_median)
+        yield Trial(
+            quantity,
+            name,
+            points,
+            state,
+            evaluations,
+            error,
+            ulp,
+            median,
+            least,
+            median / own_median,
+        )
 
 
 def errors(values: Array, truth: Array) -> tuple[float | None, float | None]:
@@ -271,7 +302,11 @@ def with_corners(rows: Sequence[Trial]) -> list[Rival]:
     best = []
     for own, others in _by_quantity(rows):
         enough = max(own.error or 0.0, 16 * ROUNDING)
-        equal = [row for row in others if CORNERS in row.method and row.error is not None and row.error <= enough]
+        equal = [
+            row
+            for row in others
+            if CORNERS in row.method and row.error is not None and row.error <= enough
+        ]
         if equal:
             row = min(equal, key=lambda row: row.least)
             best.append(Rival(row, row.least / own.least))
@@ -282,7 +317,11 @@ def without_corners(rows: Sequence[Trial]) -> list[Rival]:
     """Return for each quantity of forces the most exact rival without the corners that takes no longer than kurbel."""
     best = []
     for own, others in _by_quantity(rows):
-        as_fast = [row for row in others if CORNERS not in row.method and row.error and row.least <= own.least]
+        as_fast = [
+            row
+            for row in others
+            if CORNERS not in row.method and row.error and row.least <= own.least
+        ]
         if own.quantity in NEEDED and as_fast:
             row = min(as_fast, key=lambda row: row.error or 0.0)
             best.append(Rival(row, row.least / own.least))
@@ -299,14 +338,20 @@ def _by_quantity(rows: Sequence[Trial]) -> Iterator[tuple[Trial, list[Trial]]]:
 # what leaving out saves
 
 
-def savings(machine: Machine, compute: Callable[[Machine], object], quick: bool) -> Iterator[Saving]:
+def savings(
+    machine: Machine, compute: Callable[[Machine], object], quick: bool
+) -> Iterator[Saving]:
     """Yield the whole machine, and the same without friction, masses, cards and speed, one after another.
 
     compute: all that a command prints.
     """
     stages = {"everything": machine}
     less: tuple[tuple[str, list[object], Callable[[Cylinder], Cylinder]], ...] = (
-        ("no friction", [one.friction for one in machine.cylinders], lambda one: replace(one, friction=None)),
+        (
+            "no friction",
+            [one.friction for one in machine.cylinders],
+            lambda one: replace(one, friction=None),
+        ),
         (
             "no masses either",
             [one.masses for one in machine.cylinders],

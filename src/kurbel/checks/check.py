@@ -5,13 +5,19 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
-from kurbel.checks.limits import Entry, compared
+from kurbel.checks.limits import CheckEntry, compared_entries
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Machine, firings
 from kurbel.machine.several import intervals
 from kurbel.machine.turning import Harmonics
-from kurbel.notes.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
+from kurbel.notes.left_out import (
+    balance_left_out,
+    missing,
+    stages,
+    strength_left_out,
+    turning_stages,
+)
 from kurbel.notes.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
 from kurbel.report.delivery import delivery_left_out, delivery_warnings
 from kurbel.report.torsion import torsion_left_out, torsion_warnings
@@ -27,7 +33,7 @@ class Topic(NamedTuple):
     """A title with its entries; cylinder: it is the name of the cylinder that all of them are about."""
 
     title: str
-    entries: tuple[Entry, ...]
+    entries: tuple[CheckEntry, ...]
     cylinder: bool = False
 
 
@@ -37,31 +43,32 @@ class Checked(NamedTuple):
     title: str
     sections: tuple[Topic, ...]
     broken: bool
-    unjudged: tuple[Entry, ...]
+    unjudged: tuple[CheckEntry, ...]
 
     @property
     def shown_once(self) -> list[Topic]:
         """The sections, with one for identical cylinders."""
         groups = grouped(
-            self.sections, lambda one: (one.cylinder or one.title, tuple(entry[:3] for entry in one.entries))
+            self.sections,
+            lambda one: (one.cylinder or one.title, tuple(entry[:3] for entry in one.entries)),
         )
         return [group[0]._replace(title=together([one.title for one in group])) for group in groups]
 
 
 def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     """Return the check of a machine, and of its limits in its load cases; only what this needs is computed."""
-    machine, notes, every = case.machine, machine_notes(case), compared(case, cases)
+    machine, notes, every = case.machine, machine_notes(case), compared_entries(case, cases)
     figures = [one for one in every if not one.error]
-    of_whole = (Entry("note", note.text, "warning") for note in notes if note.cylinder is None)
-    topics: dict[str, Iterable[Entry]] = {
+    of_whole = (CheckEntry("note", note.text, "warning") for note in notes if note.cylinder is None)
+    topics: dict[str, Iterable[CheckEntry]] = {
         "Cranks": _crank_entries(machine),
         "Whole machine": (*_turning_entries(machine), *of_whole),
         "Crankshaft": _crankshaft_entries(case),
         "Balance": _balance_entries(case),
         "Shaft line": _shaft_entries(case),
         "Delivery": _delivery_entries(case),
-        "Limits": [one for one in figures if one.path[0] == "limits"],
-        "Expected": [one for one in figures if one.path[0] == "expect"],
+        "Limits": [figure for figure in figures if figure.path[0] == "limits"],
+        "Expected": [figure for figure in figures if figure.path[0] == "expect"],
     }
     found = (
         Topic("Machine", tuple(_machine_entries(machine))),
@@ -72,70 +79,96 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
         *(Topic(title, tuple(entries)) for title, entries in topics.items()),
     )
     sections = tuple(one for one in found if one.entries)
-    broken = any(one.severity == "error" for one in figures)
-    return Checked(f"{machine.name}: a valid machine", sections, broken, tuple(one for one in every if one.error))
+    broken = any(figure.severity == "error" for figure in figures)
+    return Checked(
+        f"{machine.name}: a valid machine",
+        sections,
+        broken,
+        tuple(one for one in every if one.error),
+    )
 
 
-def _machine_entries(machine: Machine) -> Iterator[Entry]:
+def _machine_entries(machine: Machine) -> Iterator[CheckEntry]:
     none = "none, a given turning effort" if machine.effort else "none, a shaft line alone"
-    yield Entry("cylinders", str(len(machine.cylinders)) if machine.cylinders else none)
-    yield Entry("cycle", f"{machine.cycle}, {360 * machine.revolutions} deg")
-    yield Entry("speed", "not given" if machine.speed is None else show(machine.speed, "speed"))
+    yield CheckEntry("cylinders", str(len(machine.cylinders)) if machine.cylinders else none)
+    yield CheckEntry("cycle", f"{machine.cycle}, {360 * machine.revolutions} deg")
+    yield CheckEntry(
+        "speed", "not given" if machine.speed is None else show(machine.speed, "speed")
+    )
     if found := firings(machine):
         path: Path = ("cylinders",) if len(machine.cylinders) > 1 else ()
         angles = [angle for angle, _ in found]
         between = intervals(angles, 360.0 * machine.revolutions)
         least, most = min(between), max(between)
         uneven = most - least > _EVEN
-        at, listed = (", ".join(f"{angle:g}" for angle in some) for some in (angles, between if uneven else [most]))
+        at, listed = (
+            ", ".join(f"{angle:g}" for angle in some)
+            for some in (angles, between if uneven else [most])
+        )
         order = f"order {'-'.join(str(number) for _, number in found)}, " if path else ""
-        yield Entry("firing", f"{order}at {at} deg, intervals {listed} deg", "info", path)
+        yield CheckEntry("firing", f"{order}at {at} deg, intervals {listed} deg", "info", path)
         if uneven:
-            yield Entry("note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "info", path)
+            yield CheckEntry(
+                "note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "info", path
+            )
 
 
-def _cylinder_entries(machine: Machine, number: int, notes: Sequence[Note]) -> Iterator[Entry]:
+def _cylinder_entries(machine: Machine, number: int, notes: Sequence[Note]) -> Iterator[CheckEntry]:
     cylinder = machine.cylinders[number]
-    mechanism, path = cylinder.mechanism, ("cylinders", number) if len(machine.cylinders) > 1 else ()
-    given = {"stroke": mechanism.stroke, **vars(mechanism)}  # the stroke may be given instead of the crank
+    mechanism, path = (
+        cylinder.mechanism,
+        ("cylinders", number) if len(machine.cylinders) > 1 else (),
+    )
+    given = {
+        "stroke": mechanism.stroke,
+        **vars(mechanism),
+    }  # the stroke may be given instead of the crank
     lengths = [
         f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
         for name, key in mechanism.KEYS.items()
         if key.form.kind != "ratio" and isinstance(size := given.get(name), float) and size
     ]
-    yield Entry("mechanism", f"{mechanism.name}: {', '.join(lengths)}")
+    yield CheckEntry("mechanism", f"{mechanism.name}: {', '.join(lengths)}")
     for piston in cylinder.pistons:
-        yield Entry(piston.name, f"bore {show(piston.bore, 'length')}")
+        yield CheckEntry(piston.name, f"bore {show(piston.bore, 'length')}")
     yield from _stages(stages(machine, cylinder), path)
-    yield from (Entry("note", note.text, "warning", path) for note in notes if note.cylinder == cylinder.name)
-    yield from (Entry("note", text, "info", path) for text in mechanism.notes)
+    yield from (
+        CheckEntry("note", note.text, "warning", path)
+        for note in notes
+        if note.cylinder == cylinder.name
+    )
+    yield from (CheckEntry("note", text, "info", path) for text in mechanism.notes)
 
 
-def _stages(stages: dict[str, str], path: Path = ()) -> Iterator[Entry]:
+def _stages(stages: dict[str, str], path: Path = ()) -> Iterator[CheckEntry]:
     """Yield what is computed, and what is left out and why."""
-    yield from _computed(", ".join(what for what, why in stages.items() if not why), missing(stages), path)
+    yield from _computed(
+        ", ".join(what for what, why in stages.items() if not why), missing(stages), path
+    )
 
 
-def _computed(what: str, left_out: Iterable[LeftOut], path: Path = ()) -> Iterator[Entry]:
-    yield Entry("computed", what)
+def _computed(what: str, left_out: Iterable[LeftOut], path: Path = ()) -> Iterator[CheckEntry]:
+    yield CheckEntry("computed", what)
     yield from (_left_out(f"{what}: {why}", path) for what, why in left_out)
 
 
-def _left_out(text: str, path: Path = ()) -> Entry:
-    return Entry("left out", text, "info", path)
+def _left_out(text: str, path: Path = ()) -> CheckEntry:
+    return CheckEntry("left out", text, "info", path)
 
 
-def _crank_entries(machine: Machine) -> Iterator[Entry]:
+def _crank_entries(machine: Machine) -> Iterator[CheckEntry]:
     """Yield for each of several cylinders by which angle it follows the first, and where its crank pin is."""
     banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
     for cylinder in machine.cylinders if len(machine.cylinders) > 1 else ():
         # the dead centre of a crank is at its bank
         behind = (cylinder.crank_position - cylinder.bank_angle) % 360.0
         pin = f", stroke line at {cylinder.bank_angle:g} deg: crank pin {behind:g} deg behind the first"
-        yield Entry(cylinder.name, f"{cylinder.crank_position:g} deg after the first{pin if banked else ''}")
+        yield CheckEntry(
+            cylinder.name, f"{cylinder.crank_position:g} deg after the first{pin if banked else ''}"
+        )
 
 
-def _turning_entries(machine: Machine) -> Iterator[Entry]:
+def _turning_entries(machine: Machine) -> Iterator[CheckEntry]:
     """Yield what `kurbel flywheel` computes of a machine, unless it is a single cylinder with nothing on the shaft."""
     given, load = (machine.flywheel, machine.load, machine.effort, machine.coupling), machine.load
     alone = len(machine.cylinders) == 1 and machine.efficiency == 1 and not any(given)
@@ -149,28 +182,37 @@ def _turning_entries(machine: Machine) -> Iterator[Entry]:
     elif load.diagram:
         text = f"a diagram of {len(load.diagram.angles)} points"
     else:
-        text = f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
-    yield Entry("load", text)
+        text = (
+            f"slip {load.slip:g}"
+            if load.slip is not None
+            else f"torque as the speed to the power {load.power:g}"
+        )
+    yield CheckEntry("load", text)
 
 
-def _crankshaft_entries(case: Case) -> Iterator[Entry]:
+def _crankshaft_entries(case: Case) -> Iterator[CheckEntry]:
     machine, path = case.machine, ("crankshaft",)
     if machine.crankshaft is None:
         return
     for text in as_far_as_solved(bearing_warnings(case), "bearings"):
-        yield Entry("bearings", text, "warning", path)
+        yield CheckEntry("bearings", text, "warning", path)
     if not shaft_obstacle(machine):
-        yield Entry("computed", "loads on pins and main bearings")
+        yield CheckEntry("computed", "loads on pins and main bearings")
     if strength_obstacle(machine):
         yield _left_out(f"strength: {strength_obstacle(machine)}", path)
     else:
-        yield from _computed("forces on the bearings, stresses in pin and webs", strength_left_out(machine), path)
+        yield from _computed(
+            "forces on the bearings, stresses in pin and webs", strength_left_out(machine), path
+        )
 
 
-def _balance_entries(case: Case) -> Iterator[Entry]:
+def _balance_entries(case: Case) -> Iterator[CheckEntry]:
     """Yield what `kurbel balance` computes of a machine with axial positions, counterweights or driven wheels."""
     machine = case.machine
-    placed = any(one.axial_position is not None or one.counterweights for one in machine.cylinders)
+    placed = any(
+        cylinder.axial_position is not None or cylinder.counterweights
+        for cylinder in machine.cylinders
+    )
     if not (placed or machine.counterweights or machine.balance_shafts or machine.locomotive):
         return
     try:
@@ -178,38 +220,48 @@ def _balance_entries(case: Case) -> Iterator[Entry]:
     except KurbelError as error:
         yield _left_out(str(error))
     else:
-        yield from _computed("unbalanced forces and moments, their orders, best counterweights", lacking)
+        yield from _computed(
+            "unbalanced forces and moments, their orders, best counterweights", lacking
+        )
 
 
-def _shaft_entries(case: Case) -> Iterator[Entry]:
+def _shaft_entries(case: Case) -> Iterator[CheckEntry]:
     """Yield what `kurbel torsion` computes of a shaft line or a coupling, or why it cannot."""
     shaft, path = case.machine.shaft, ("shaft",)
     if shaft is None and case.machine.coupling is None:
         return
     for text in as_far_as_solved(torsion_warnings(case), "torsion"):
-        yield Entry("torsion", text, "warning")
+        yield CheckEntry("torsion", text, "warning")
     if shaft is None:
         return
-    yield Entry("masses", str(len(shaft.masses)))
+    yield CheckEntry("masses", str(len(shaft.masses)))
     try:
         found = case.torsion
     except KurbelError as error:
         yield _left_out(f"torsional vibration: {error}", path)
     else:
         forced = "" if found.obstacle else ", torques and stresses"
-        yield from _computed(f"natural frequencies, critical speeds{forced}", torsion_left_out(found), path)
+        yield from _computed(
+            f"natural frequencies, critical speeds{forced}", torsion_left_out(found), path
+        )
 
 
-def _delivery_entries(case: Case) -> Iterator[Entry]:
+def _delivery_entries(case: Case) -> Iterator[CheckEntry]:
     """Yield what `kurbel delivery` computes of a machine with pumps or compressors, or why it cannot."""
     with suppress(KurbelError):  # nothing is delivered
         found = case.delivery
         try:
-            yield from [Entry("delivery", text, "warning") for text in delivery_warnings(found)]
+            yield from [
+                CheckEntry("delivery", text, "warning") for text in delivery_warnings(found)
+            ]
         except KurbelError as error:
             yield _left_out(str(error), ("pump",))
             return
-        pump = ["flow"] * (case.machine.speed is not None) + ["fluctuating volume"] if found.pump else []
+        pump = (
+            ["flow"] * (case.machine.speed is not None) + ["fluctuating volume"]
+            if found.pump
+            else []
+        )
         stages = ["stages and ends of compressors"] if found.stages else []
         yield from _computed(", ".join([*pump, *stages]), delivery_left_out(found))
 
@@ -237,8 +289,15 @@ def faults_found(file: str, error: KurbelError) -> list[Finding]:
     if not isinstance(error, MachineFileError):
         return [Finding(file, None, None, None, str(error), "error")]
     return [
-        Finding(error.file_name, one.line, one.column, path_text(one.path) or None, one.message, "error")
-        for one in error.faults
+        Finding(
+            error.file_name,
+            fault.line,
+            fault.column,
+            path_text(fault.path) or None,
+            fault.message,
+            "error",
+        )
+        for fault in error.faults
     ]
 
 
@@ -251,8 +310,15 @@ def findings(machine: Machine, checked: Checked, locate: Locate) -> list[Finding
     found: list[tuple[Path, str, str]] = []
     for section in checked.sections:
         head = f"{section.title}: " if several and section.cylinder else ""
-        found += [(one.path, f"{head}{one.what}: {one.text}", one.severity) for one in section.entries if one.severity]
-    found += [(one.path, str(one.error).removeprefix(f"{path_text(one.path)}: "), "error") for one in checked.unjudged]
+        found += [
+            (entry.path, f"{head}{entry.what}: {entry.text}", entry.severity)
+            for entry in section.entries
+            if entry.severity
+        ]
+    found += [
+        (one.path, str(one.error).removeprefix(f"{path_text(one.path)}: "), "error")
+        for one in checked.unjudged
+    ]
 
     at_keys = [Fault(path, "", at_key=True) for path in {path for path, _, _ in found if path}]
     located = locate(origin.text, at_keys) if origin and at_keys else ()

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.declared.forms.figures import MACHINE, Bound, Expected, scoped
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
@@ -18,14 +18,14 @@ from kurbel.quantities import every_quantity
 from kurbel.quantity import NOISE_POWER, Quantity, by_id, called
 from kurbel.report.commands import COMMANDS, subjects_of
 from kurbel.solver.case import Case
-from kurbel.tables.frame import Frame, Places, Row, Subject, report_on, too_large
+from kurbel.tables.frame import Frame, PlaceRow, Places, Subject, report_on, too_large
 from kurbel.tables.tables import Report, grouped, together
 
 _ROUNDING = 1e-9
 """Relative tolerance of a bound: a stroke of 110 mm does not break a limit of 110 mm through rounding."""
 
 
-class Entry(NamedTuple):
+class CheckEntry(NamedTuple):
     """One line of a section of a check.
 
     severity: `error` for a limit or an expectation that FAILs, `warning`, `info`, or '' for a plain statement; path: of
@@ -45,7 +45,7 @@ class Entry(NamedTuple):
     error: KurbelError | None = None
 
 
-def compared(case: Case, cases: Sequence[Case] = ()) -> list[Entry]:
+def compared_entries(case: Case, cases: Sequence[Case] = ()) -> list[CheckEntry]:
     """Return how limits and expectations of a machine compare, in its load cases, too."""
     found = [*judged(case)]
     for one in cases:
@@ -55,13 +55,15 @@ def compared(case: Case, cases: Sequence[Case] = ()) -> list[Entry]:
 
 
 @np.errstate(all="ignore")
-def judged(case: Case) -> Iterator[Entry]:
+def judged(case: Case) -> Iterator[CheckEntry]:
     """Yield how each limit and then each expectation compares, or why it cannot be compared.
 
     Values that are equal to nine digits are compared once.
     """
     machine, declared = case.machine, by_id(*every_quantity().all_key_values)
-    figures = [("limits", *one) for one in machine.limits] + [("expect", *one) for one in machine.expect]
+    figures = [("limits", *limit) for limit in machine.limits] + [
+        ("expect", *one) for one in machine.expect
+    ]
     for key, name, figure in figures:
         bound = figure if isinstance(figure, (Bound, Expected)) else Bound(figure)
         quantity, path = declared[scoped(name)[1]], (key, bound.name or name)
@@ -69,30 +71,34 @@ def judged(case: Case) -> Iterator[Entry]:
             found = _values(case, name)
             if not found:
                 text = f"{quantity.text[:1].lower()}{quantity.text[1:]}"
-                raise UsageError(f"{without(path[1], quantity.id)}: {text}")
+                raise UsageError(f"{no_such_value(path[1], quantity.id)}: {text}")
         except KurbelError as error:
-            yield Entry(name, "", path=path, error=type(error)(f"{path_text(path)}: {error}"))
+            yield CheckEntry(name, "", path=path, error=type(error)(f"{path_text(path)}: {error}"))
             continue
         verdicts = [
             _compared(path, quantity, bound, together([where for where, _ in equal]), equal[0][1])
             for equal in grouped(found, lambda one: f"{one[1]:.9g}")
         ]
         yield from verdicts
-        if all(one.severity == "info" for one in verdicts) and not isinstance(bound, Expected):
+        if all(verdict.severity == "info" for verdict in verdicts) and not isinstance(
+            bound, Expected
+        ):
             yield from _beyond_by_sign(case, name, bound, path, declared)
 
 
-def without(name: str, id: str) -> str:
+def no_such_value(name: str, id: str) -> str:
     """Return the message that the machine, or the part of it with this name, does not have a key value."""
     scope = {"": "this machine", MACHINE: "the whole machine"}.get(scoped(name)[0], scoped(name)[0])
     return f"{scope} has no {id}"
 
 
-def _compared(path: Path, quantity: Quantity, bound: Bound | Expected, where: str, value: float) -> Entry:
+def _compared(
+    path: Path, quantity: Quantity, bound: Bound | Expected, where: str, value: float
+) -> CheckEntry:
     """Compare a value in SI with its bound or expectation; a value that is not finite cannot be compared."""
     if not math.isfinite(value):
         error = UsageError(f"{path_text(path)} ({where}): {too_large(quantity)}")
-        return Entry(str(path[-1]), "", path=path, error=error)
+        return CheckEntry(str(path[-1]), "", path=path, error=error)
     kind, unit, noise = quantity.kind, bound.unit, quantity.is_noise(value)
     size = f"< 1e{NOISE_POWER}" if noise else _shown(value, kind, unit)
     if isinstance(bound, Expected):
@@ -102,13 +108,18 @@ def _compared(path: Path, quantity: Quantity, bound: Bound | Expected, where: st
         off = f", {_shown(max(low, high), kind, unit)} too {'small' if low > high else 'large'}"
         text = f"{size}, expected {limit}  {'PASS' if ok else 'FAIL' + off}"
     else:
-        ok, (sign, broken) = not breaks(quantity, bound, value), "≥<" if quantity.bounded_below else "≤>"
+        ok, (sign, broken) = (
+            not breaks(quantity, bound, value),
+            "≥<" if quantity.bounded_below else "≤>",
+        )
         limit = f"{sign} {_shown(bound, kind, unit)}"
         size = f"|{size}|" if quantity.id.endswith("_residual") and not noise else size
         text = f"{size} {limit}  PASS" if ok else f"{size} {broken}{limit[1:]}  FAIL"
     number = 100 * value if unit == "%" else float(convert(value, kind, unit))
     severity, text = "info" if ok else "error", f"{text}  ({where})"
-    return Entry(str(path[-1]), text, severity, path, number, unit or SI[kind], limit, where, quantity)
+    return CheckEntry(
+        str(path[-1]), text, severity, path, number, unit or SI[kind], limit, where, quantity
+    )
 
 
 def breaks(quantity: Quantity, bound: float, value: float) -> bool:
@@ -127,7 +138,7 @@ def _shown(value: float, kind: str, unit: str) -> str:
 
 def _beyond_by_sign(
     case: Case, name: str, bound: Bound, path: Path, declared: Mapping[str, Quantity]
-) -> Iterator[Entry]:
+) -> Iterator[CheckEntry]:
     """Yield a note if the extreme of the other sign has a larger magnitude than a limit, which does not apply to it."""
     base, _, end = name.rpartition("_")
     other, upward = (f"{base}_min", 1) if end == "max" else (f"{base}_max", -1)
@@ -135,13 +146,15 @@ def _beyond_by_sign(
     if quantity is None or bound * upward <= 0 or other in dict(case.machine.limits):
         return
     peak = f"{base}_peak"
-    advice = f"'{peak}' bounds the magnitude" if scoped(peak)[1] in declared else f"bound '{other}' too"
+    advice = (
+        f"'{peak}' bounds the magnitude" if scoped(peak)[1] in declared else f"bound '{other}' too"
+    )
     with suppress(KurbelError):
         for where, value in _values(case, other):
             if -value * upward > abs(bound) * (1 + _ROUNDING):
                 size = _shown(value, quantity.kind, bound.unit)
                 text = f"{other} = {size} is beyond it with the other sign; {advice}  ({where})"
-                yield Entry(str(path[-1]), text, "warning", path)
+                yield CheckEntry(str(path[-1]), text, "warning", path)
 
 
 # whose key values the limits and expectations are for
@@ -157,8 +170,13 @@ class Holder(NamedTuple):
 
 def _values(case: Case, name: str) -> list[tuple[str, float]]:
     """Return who has a key value that a figure of this name is for, with the values in SI; raises KurbelError."""
-    values = [(one.subject.name, one.subject.answer(one.quantity)) for one in holders(case, name)]
-    return [(where, number_of(value)) for where, value in values if isinstance(value, (Extreme, float))]
+    values = [
+        (holder.subject.name, holder.subject.answer(holder.quantity))
+        for holder in holders(case, name)
+    ]
+    return [
+        (where, number_of(value)) for where, value in values if isinstance(value, (Extreme, float))
+    ]
 
 
 def holders(case: Case, name: str) -> list[Holder]:
@@ -174,7 +192,7 @@ def holders(case: Case, name: str) -> list[Holder]:
             return True
 
     scope, id = scoped(name)
-    cylinders = [one.name for one in case.machine.cylinders]
+    cylinders = [cylinder.name for cylinder in case.machine.cylinders]
     first, *others = every_quantity().commands_of(id)
     # what the only cylinder does not have, the machine does not have
     whole = [one for one in others if one == "flywheel"] if scope or len(cylinders) != 1 else []
@@ -208,7 +226,11 @@ def name_of(case: Case) -> str:
 
 @np.errstate(all="ignore")  # what overflows is refused by name
 def cases_report(
-    base: Machine, cases: Sequence[Case], command: str, system: str, names: Sequence[str] | None = None
+    base: Machine,
+    cases: Sequence[Case],
+    command: str,
+    system: str,
+    names: Sequence[str] | None = None,
 ) -> Report:
     """Return the key values of load cases, a row for each, of each part of the machine.
 
@@ -216,12 +238,17 @@ def cases_report(
     is none, and if no case has any.
     """
     declared = every_quantity().key_values(command)
-    known = {name: called(name, declared.values()) for name in names or COMMANDS[command].in_cases.split()}
+    known = {
+        name: called(name, declared.values())
+        for name in names or COMMANDS[command].in_cases.split()
+    }
     for name in (name for name, ids in known.items() if not ids):
         near = did_you_mean(name, tuple(declared))
-        raise UsageError(f"--columns: '{shown(name)}' is no key value of kurbel {command}{near}")
+        raise UsageError(
+            f"--columns: '{text_in_one_line(name)}' is no key value of kurbel {command}{near}"
+        )
     ids = [ids[0] for ids in known.values()]
-    rows: dict[str, list[Row]] = {}
+    rows: dict[str, list[PlaceRow]] = {}
     notes: list[str] = []
     for case in cases:
         try:
@@ -239,5 +266,7 @@ def cases_report(
     parts = []
     for name, of_part in rows.items():
         title = f"Load cases: {name}" if len(rows) > 1 else "Load cases"
-        parts.append(Subject(name, tables=[Places("cases", title, ("case",), chosen, of_part, headed=True)]))
+        parts.append(
+            Subject(name, tables=[Places("cases", title, ("case",), chosen, of_part, headed=True)])
+        )
     return report_on(Frame(command, (), None, system), base, "Load cases", parts, notes)

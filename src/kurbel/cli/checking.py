@@ -62,12 +62,15 @@ def check_files(
     look = look_at(file_name, Look(width=width))
     if format == "table":
         write_out(_as_text(outcomes, look), file_name)
-        for error in (one.error for one in outcomes if one.error):
+        for error in (outcome.error for outcome in outcomes if outcome.error):
             if len(files) == 1:
                 raise error
             to_stderr(message_of(error))
     else:
-        found = [(one.file, [finding._asdict() for finding in one.findings]) for one in outcomes]
+        found = [
+            (outcome.file, [finding._asdict() for finding in outcome.findings])
+            for outcome in outcomes
+        ]
         if format == "junit":
             write_out(findings_junit(found, look._replace(encoding="utf-8")), file_name, "utf-8")
         else:
@@ -75,7 +78,7 @@ def check_files(
             name, made_from = (only.name, provenance(only)) if only else (None, None)
             listed = [finding for _, each in found for finding in each]
             write_out(findings_json(name, made_from, listed, look), file_name)
-    return min((one.status for one in outcomes), key=_GRAVEST.index)
+    return min((outcome.status for outcome in outcomes), key=_GRAVEST.index)
 
 
 def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str | None) -> Outcome:
@@ -84,15 +87,23 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
         machine = load(file, tuple(overrides), case_name)
         if machine.uncertainty:  # is judged by what is in the file
             given_uncertainty(machine)
-        names = [one.name for one in machine.cases] if not case_name else []
-        cases = [Case(one) for one in load_cases(machine.origin, names)] if machine.origin else []
+        names = [case.name for case in machine.cases] if not case_name else []
+        cases = (
+            [Case(load_case) for load_case in load_cases(machine.origin, names)]
+            if machine.origin
+            else []
+        )
     except KurbelError as error:
         return Outcome(file, error)
     refuse_overwriting(file_name, machine.trace_files)
     found = checked(Case(machine), cases)
     errors = [one.error for one in found.unjudged if one.error]
     # all errors of a machine as one of the gravest kind
-    gravest = type(min(errors, key=lambda error: error.exit_status))("\n".join(map(str, errors))) if errors else None
+    gravest = (
+        type(min(errors, key=lambda error: error.exit_status))("\n".join(map(str, errors)))
+        if errors
+        else None
+    )
     return Outcome(file, gravest, machine, found)
 
 
@@ -101,7 +112,8 @@ def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
     for number, one in enumerate(outcomes):
         if one.checked:
             topics = [
-                (topic.title, [(entry.what, entry.text) for entry in topic.entries]) for topic in one.checked.shown_once
+                (topic.title, [(entry.what, entry.text) for entry in topic.entries])
+                for topic in one.checked.shown_once
             ]
             several = f"{one.file}: " if len(outcomes) > 1 else ""
             yield "\n" * (number > 0) + listing(several + one.checked.title, topics, look)

@@ -4,7 +4,7 @@ import math
 
 import click
 
-from kurbel.cli.group import Progress
+from kurbel.cli.group import ProgressLine
 from kurbel.cli.request import case_of
 from kurbel.designs.api import find, sweep
 from kurbel.machine import Machine
@@ -29,14 +29,20 @@ def compare(
         raise click.UsageError("--case and --set are values over those of FILE; give the FILE.")
     if extremes:
         if file is not None or picture is not None:
-            raise click.UsageError("--extremes has its own machines and no picture; leave FILE and --plot out.")
+            raise click.UsageError(
+                "--extremes has its own machines and no picture; leave FILE and --plot out."
+            )
         report, passed = extremes_report(loads, answer_of)
         output.write(report)
         return int(not passed)
     if picture is not None:
         check_file(picture, "--plot")
-    machine = None if file is None else case_of(file, case_name, overrides, output.file_name, picture).machine
-    with Progress("accuracy") as progress:
+    machine = (
+        None
+        if file is None
+        else case_of(file, case_name, overrides, output.file_name, picture).machine
+    )
+    with ProgressLine("accuracy") as progress:
         report = accuracy_report(machine, quick, loads, progress)
     output.write(report)
     if picture is not None:

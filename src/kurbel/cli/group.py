@@ -42,7 +42,9 @@ _MEANINGS = {
 def exit_statuses(command: str = "") -> str:
     """Return the last sentence of the help of a command, or of `kurbel` itself."""
     own = COMMANDS[command].statuses if command else (BROKEN, NO_SOLUTION)
-    listed = (one for one in _MEANINGS if one not in (BROKEN, NO_SOLUTION) or one in own)
+    listed = (
+        meaning for meaning in _MEANINGS if meaning not in (BROKEN, NO_SOLUTION) or meaning in own
+    )
     return "Exit status: " + "; ".join(f"{status} {_MEANINGS[status]}" for status in listed)
 
 
@@ -129,7 +131,7 @@ def to_stderr(message: str) -> None:
         silence(sys.stderr)
 
 
-class Progress:
+class ProgressLine:
     """A progress line on standard error: what is being computed, and the remaining time.
 
     It appears after two seconds and disappears at the end; in a pipe and on a CI service there is none.
@@ -157,7 +159,7 @@ class Progress:
                 self(f"{number} of {count} {what}", number / max(count, 1))
                 yield one
 
-    def __enter__(self) -> "Progress":
+    def __enter__(self) -> "ProgressLine":
         return self
 
     def __exit__(self, *_: object) -> None:

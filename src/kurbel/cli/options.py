@@ -10,7 +10,7 @@ import click
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
-from kurbel.quantity import Lists, ambiguity, called, joined
+from kurbel.quantity import Lists, ambiguity, called, rejoined_names
 from kurbel.render import FORMATS, LAYOUTS, Look
 from kurbel.render.formats import Output
 
@@ -49,7 +49,9 @@ def speeds(text: str) -> tuple[float, ...]:
     unit = written_unit(text.replace(":", ",").rpartition(",")[2])
 
     def speed(one: str) -> float:
-        found = _read(parse_quantity, one if written_unit(one) else f"{one} {unit}".strip(), "speed")
+        found = _read(
+            parse_quantity, one if written_unit(one) else f"{one} {unit}".strip(), "speed"
+        )
         if not found > 0:
             raise click.BadParameter(f"'{text}': it must be more than 0")
         return found
@@ -76,7 +78,9 @@ def _each(text: str, read: Callable[[str], float], sample: str) -> tuple[float, 
     if (high - low) / step > _MOST_STEPS:
         raise click.BadParameter(f"'{text}': more than {_MOST_STEPS} steps; take larger ones")
     count = int((high - low) / step + 1e-9) + 1
-    return tuple(float(f"{low + step * index:.15g}") for index in range(count))  # 3 · 0.1 is written 0.3
+    return tuple(
+        float(f"{low + step * index:.15g}") for index in range(count)
+    )  # 3 · 0.1 is written 0.3
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -92,7 +96,7 @@ def columns(text: str) -> tuple[str, ...]:
     named = words(text)
     known = [column for column in _quantities().all_columns if column.commands]
     ids = []
-    for name in joined(named, known):
+    for name in rejoined_names(named, known):
         found = called(name, known)
         if wrong := ambiguity(name, found):
             raise click.BadParameter(wrong)
@@ -106,7 +110,9 @@ def key_values(text: str) -> tuple[str, ...]:
     names = list[str]()
     for piece in words(text):
         parts = piece.split()
-        are_names = all(called(part.rpartition(".")[2], known) for part in parts)  # without their scopes
+        are_names = all(
+            called(part.rpartition(".")[2], known) for part in parts
+        )  # without their scopes
         names += parts if are_names else [piece]
     return tuple(names)
 
@@ -117,13 +123,15 @@ def _quantities() -> Lists:
     return every_quantity()
 
 
-def spread(text: str) -> tuple[str, str]:
+def read_uncertainty(text: str) -> tuple[str, str]:
     """Return a dotted key with its standard uncertainty as a text."""
     from kurbel.declared.forms.figures import spread_text
 
     key, _, size = text.partition("=")
     if not (key.strip() and spread_text(size)):
-        raise click.UsageError(f"--uncertainty {text}: write KEY=SPREAD, above 0, such as bore='0.2 mm'.")
+        raise click.UsageError(
+            f"--uncertainty {text}: write KEY=SPREAD, above 0, such as bore='0.2 mm'."
+        )
     return key.strip(), spread_text(size)
 
 
@@ -146,7 +154,9 @@ def _ids(ctx: click.Context, begun: str) -> Iterable[str]:
     """Return the columns of a command, or if it has none all key values, that are not in the list yet."""
     every = _quantities()
     before, comma, _ = begun.rpartition(",")
-    ids = dict.fromkeys(every.columns(ctx.info_name or "") or (one.id for one in every.all_key_values))
+    ids = dict.fromkeys(
+        every.columns(ctx.info_name or "") or (key_value.id for key_value in every.all_key_values)
+    )
     return [before + comma + one for one in ids if one not in before.split(",")]
 
 
@@ -173,15 +183,19 @@ def _machine(ctx: click.Context) -> "Machine":
 def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
     from kurbel.pictures.pictures import PICTURES
 
-    return (*(one.id for one in PICTURES), "all")
+    return (*(picture.id for picture in PICTURES), "all")
 
 
 complete_ids = completing(_ids)
 complete_key_values = completing(_key_values)
 complete_key = completing(_keys)
-complete_override = completing(lambda ctx, text: () if "=" in text else [f"{key}=" for key in _keys(ctx, text)])
-complete_cylinder = completing(lambda ctx, _: [one.name for one in _machine(ctx).cylinders])
-complete_case = completing(lambda ctx, _: [one.name for one in _machine(ctx).cases])
+complete_override = completing(
+    lambda ctx, text: () if "=" in text else [f"{key}=" for key in _keys(ctx, text)]
+)
+complete_cylinder = completing(
+    lambda ctx, _: [cylinder.name for cylinder in _machine(ctx).cylinders]
+)
+complete_case = completing(lambda ctx, _: [case.name for case in _machine(ctx).cases])
 complete_picture = completing(_pictures)
 
 
@@ -269,7 +283,9 @@ set_option = click.option(
 )
 set_options = stacked(case_option, set_option)
 """Values over those of a file: those of a load case of it, and others over these."""
-machine_file = stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_options)
+machine_file = stacked(
+    click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_options
+)
 """The machine file, or - for standard input, and values over those in it."""
 
 angle_options = stacked(
@@ -297,7 +313,10 @@ columns_option = click.option(
     shell_complete=complete_ids,
 )
 cylinder_option = click.option(
-    "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
+    "--cylinder",
+    metavar="NAME",
+    help="Only this cylinder, by name or number.",
+    shell_complete=complete_cylinder,
 )
 part_options = stacked(
     cylinder_option,
@@ -323,10 +342,17 @@ units_option = click.option(
     "imperial: in, lbf, psi; si: the default of csv and json.",
 )
 width_option = click.option(
-    "--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill; a terminal's own if not given."
+    "--width",
+    type=click.IntRange(20, 100_000),
+    metavar="N",
+    help="Columns to fill; a terminal's own if not given.",
 )
 output_option = click.option(
-    "--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."
+    "--output",
+    "-o",
+    "file_name",
+    metavar="FILE",
+    help="Write to this file instead of standard output.",
 )
 number_options = stacked(
     click.option(
@@ -338,12 +364,17 @@ number_options = stacked(
         help="Decimal sign; a comma makes csv use ';'.",
     ),
     click.option(
-        "--digits", type=click.IntRange(1, 17), help="Significant digits; if not given 4, and all in csv and json."
+        "--digits",
+        type=click.IntRange(1, 17),
+        help="Significant digits; if not given 4, and all in csv and json.",
     ),
 )
 _look_options = stacked(
     click.option(
-        "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
+        "--layout",
+        type=click.Choice(LAYOUTS),
+        default="book",
+        help="book: angles across; rows: one line per angle.",
     ),
     format_option(*FORMATS),
     output_option,
@@ -358,22 +389,31 @@ orders_option = click.option(
     help="Only these orders, periods per turn of the shaft, or FROM:TO:STEP; all up to 24 if not given.",
 )
 speeds_option = click.option(
-    "--speeds", type=speeds, metavar="'A,B,... rpm'", help="Also at these speeds; or 'FROM:TO:STEP rpm'."
+    "--speeds",
+    type=speeds,
+    metavar="'A,B,... rpm'",
+    help="Also at these speeds; or 'FROM:TO:STEP rpm'.",
 )
 where_option = click.option(
-    "--where", metavar="'COLUMN = VALUE'", help="Rows where a column has a value, such as 'b = 1/6 b_max'."
+    "--where",
+    metavar="'COLUMN = VALUE'",
+    help="Rows where a column has a value, such as 'b = 1/6 b_max'.",
 )
 row_options = stacked(
     where_option,
     click.option(
-        "--over", type=click.Choice(["x"]), help="Rows over the stroke, out and back, every --step percent of it."
+        "--over",
+        type=click.Choice(["x"]),
+        help="Rows over the stroke, out and back, every --step percent of it.",
     ),
-    click.option("--compare", is_flag=True, help="Also the textbook approximations (R 286-291, 297)."),
+    click.option(
+        "--compare", is_flag=True, help="Also the textbook approximations (R 286-291, 297)."
+    ),
 )
 uncertainty_option = click.option(
     "--uncertainty",
     "spreads",
-    type=spread,
+    type=read_uncertainty,
     multiple=True,
     metavar="KEY=SPREAD",
     help="Standard uncertainty of a value of FILE, such as bore='0.2 mm' or '2 %'; may be repeated.",
@@ -392,7 +432,10 @@ _OF_NO_FORMAT = ("", ".txt", ".yaml", ".yml")
 
 
 def format_of(
-    requested: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES, comma: bool = False
+    requested: str | None,
+    file_name: str | None,
+    suffixes: Mapping[str, str] = _SUFFIXES,
+    comma: bool = False,
 ) -> str:
     """Return the requested format, or that of the suffix of the file.
 
@@ -402,7 +445,9 @@ def format_of(
     of_suffix = suffixes.get(suffix)
     if not (requested or of_suffix or suffix in _OF_NO_FORMAT):
         known = ", ".join(suffixes)
-        raise click.UsageError(f"--output {file_name}: no format has this suffix; write {known}, .txt, or --format.")
+        raise click.UsageError(
+            f"--output {file_name}: no format has this suffix; write {known}, .txt, or --format."
+        )
     if requested and of_suffix and requested != of_suffix:
         raise click.UsageError(
             f"--format {requested} contradicts the name {file_name}, which means {of_suffix}; change one of them."
@@ -432,5 +477,5 @@ def output_options(command: Callable[..., object]) -> Callable[..., object]:
     return _look_options(with_output)
 
 
-Spreads = tuple[tuple[str, str], ...]
+UncertaintyTexts = tuple[tuple[str, str], ...]
 """Dotted keys, each with its standard uncertainty as a text."""

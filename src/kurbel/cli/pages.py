@@ -22,10 +22,24 @@ from kurbel.cli.options import (
 
 
 @kurbel.command()
-@click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
+@click.argument(
+    "files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True)
+)
 @set_options
-@click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
-@click.option("--step", type=number, default="15", metavar="DEGREES", help="Step of the tables; 15 if not given.")
+@click.option(
+    "--output",
+    "-o",
+    "file_name",
+    metavar="FILE.html",
+    help="Write to this file, not to standard output.",
+)
+@click.option(
+    "--step",
+    type=number,
+    default="15",
+    metavar="DEGREES",
+    help="Step of the tables; 15 if not given.",
+)
 @click.option("--title", help="Title of the page; the name of the machine if not given.")
 @units_option
 @number_options
@@ -44,10 +58,25 @@ def report(**options: Any) -> None:
 @click.argument("file", metavar="FILE", required=False, type=click.Path(allow_dash=True))
 @set_options
 @click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
-@click.option("--list", "listed", is_flag=True, help="List the pictures of this machine; without FILE, all pictures.")
+@click.option(
+    "--list",
+    "listed",
+    is_flag=True,
+    help="List the pictures of this machine; without FILE, all pictures.",
+)
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
-@click.option("--angles", type=numbers, metavar="A,B,...", help="Mechanism and constructions at these crank angles.")
-@click.option("--poster", "size", metavar="A0|...|A5", help="The machine in section as a wall sheet, to a pdf or svg.")
+@click.option(
+    "--angles",
+    type=numbers,
+    metavar="A,B,...",
+    help="Mechanism and constructions at these crank angles.",
+)
+@click.option(
+    "--poster",
+    "size",
+    metavar="A0|...|A5",
+    help="The machine in section as a wall sheet, to a pdf or svg.",
+)
 @cylinder_option
 @units_option
 @number_options
@@ -65,7 +94,9 @@ def plot(**options: Any) -> None:
 
 
 @kurbel.command()
-@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(allow_dash=True))
+@click.argument(
+    "files", metavar="FILE...", nargs=-1, required=True, type=click.Path(allow_dash=True)
+)
 @set_options
 @format_option(
     "table",

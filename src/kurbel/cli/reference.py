@@ -22,7 +22,7 @@ from kurbel.near_words import did_you_mean
 from kurbel.render.formats import Output
 from kurbel.render.output import write_entries, write_out
 from kurbel.shipped import shipped
-from kurbel.tables.tables import crank_angles
+from kurbel.tables.tables import table_angles
 
 
 class _Ratio(NamedTuple):
@@ -70,7 +70,9 @@ def _ratio(text: str) -> _Ratio:
     help="book: acceleration of first order, all else exact. first-order: b, c and x, the others exact.",
 )
 @click.option(
-    "--compare", is_flag=True, help="Print the figures of the book below the computed ones, misprints marked."
+    "--compare",
+    is_flag=True,
+    help="Print the figures of the book below the computed ones, misprints marked.",
 )
 @angle_options
 @units_option
@@ -104,17 +106,27 @@ def table(
     from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
 
     if extra := click.get_current_context().args:
-        raise click.UsageError(f"'{extra[0]}' is no option; write 'kurbel table --ratio {extra[0]}' for this L/R")
+        raise click.UsageError(
+            f"'{extra[0]}' is no option; write 'kurbel table --ratio {extra[0]}' for this L/R"
+        )
     values = tuple(ratio.value for ratio in ratios) or RATIOS
-    printed = crank_angles(step, angles, 180, len(values))
+    printed = table_angles(step, angles, 180, len(values))
     report = zusammenstellung(values, rows, printed, formula, compare)
     notes = tuple(ratio.note for ratio in ratios if ratio.note)
     output.write(report._replace(notes=(*notes, *report.notes)))
 
 
 @kurbel.command()
-@click.option("--incline", type=number, required=True, metavar="DEGREES", help="Plane against the horizontal.")
-@click.option("--coefficient", type=number, required=True, metavar="F", help="Coefficient of friction, such as 0.1.")
+@click.option(
+    "--incline", type=number, required=True, metavar="DEGREES", help="Plane against the horizontal."
+)
+@click.option(
+    "--coefficient",
+    type=number,
+    required=True,
+    metavar="F",
+    help="Coefficient of friction, such as 0.1.",
+)
 @click.option(
     "--direction",
     type=number,
@@ -151,7 +163,9 @@ def example(name: str | None, file_name: str | None) -> None:
         return
     bare = name.removesuffix(".yaml")
     if bare not in files:
-        raise UsageError(f"no example '{name}'{did_you_mean(bare, tuple(files))} (known: {', '.join(files)})")
+        raise UsageError(
+            f"no example '{name}'{did_you_mean(bare, tuple(files))} (known: {', '.join(files)})"
+        )
     write_out((files[bare],), file_name, "utf-8")
 
 
@@ -178,7 +192,11 @@ def units(kind: str | None) -> None:
     Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2.
     """
     named = {one.replace("_", " "): ", ".join(listed_units(one)) for one in kinds()}
-    chosen = named if kind is None else {name: units for name, units in named.items() if name == kind.replace("_", " ")}
+    chosen = (
+        named
+        if kind is None
+        else {name: units for name, units in named.items() if name == kind.replace("_", " ")}
+    )
     if not chosen:
         hint = did_you_mean(str(kind), tuple(named)) or f"; there are {', '.join(named)}"
         raise UsageError(f"no kind of quantity '{kind}'{hint}")
@@ -186,7 +204,9 @@ def units(kind: str | None) -> None:
 
 
 @kurbel.command()
-@click.option("--answers", is_flag=True, help="The schema of the output of -f json instead, for programs.")
+@click.option(
+    "--answers", is_flag=True, help="The schema of the output of -f json instead, for programs."
+)
 @output_option
 def schema(answers: bool, file_name: str | None) -> None:
     """Print the JSON Schema (draft-07) of the machine file; editors complete and check with it.

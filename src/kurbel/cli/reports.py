@@ -30,7 +30,9 @@ from kurbel.report.commands import Command as Row
 
 _OF_EVERY = "Key values are exact, whichever rows are printed. FILE may be - for standard input."
 _cases_option = click.option(
-    "--cases", is_flag=True, help="A row of key values for every load case of FILE, those of --columns if given."
+    "--cases",
+    is_flag=True,
+    help="A row of key values for every load case of FILE, those of --columns if given.",
 )
 
 
@@ -46,13 +48,24 @@ _OWN = {
     "forces": stacked(
         row_options,
         click.option(
-            "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
+            "--cycle",
+            type=click.IntRange(min=1),
+            metavar="N",
+            help="This measured cycle of a trace, not their mean.",
         ),
-        _instead("--each-cycle", "A line for every measured cycle instead of the table over the angle."),
+        _instead(
+            "--each-cycle", "A line for every measured cycle instead of the table over the angle."
+        ),
     ),
-    "stress": stacked(_instead("--places", "Only the stresses place by place; as csv one line each.")),
+    "stress": stacked(
+        _instead("--places", "Only the stresses place by place; as csv one line each.")
+    ),
     "balance": stacked(
-        click.option("--compare", is_flag=True, help="Also by the textbook formula cos phi + R/L cos 2phi (R 291)."),
+        click.option(
+            "--compare",
+            is_flag=True,
+            help="Also by the textbook formula cos phi + R/L cos 2phi (R 291).",
+        ),
         _instead("--orders", "Only the tables of orders and weights, and key values."),
     ),
     "harmonics": stacked(orders_option, speeds_option),
@@ -60,9 +73,14 @@ _OWN = {
         orders_option,
         speeds_option,
         click.option(
-            "--modes", type=click.IntRange(1, 100), default=3, help="Critical speeds of so many modes; 3 if not given."
+            "--modes",
+            type=click.IntRange(1, 100),
+            default=3,
+            help="Critical speeds of so many modes; 3 if not given.",
         ),
-        click.option("--mode", type=click.IntRange(1), help="The mode of Holzer's table; 1 if not given."),
+        click.option(
+            "--mode", type=click.IntRange(1), help="The mode of Holzer's table; 1 if not given."
+        ),
         click.option(
             "--at",
             type=frequency,
@@ -88,7 +106,9 @@ def _command(row: Row) -> click.Command:
     cases = (_cases_option,) if row.in_cases else ()
     shared = [_SHARED[word] for word in row.options]
     own = (_OWN[row.word],) if row.word in _OWN else ()
-    with_options = stacked(machine_file, *rows, part_options, units_option, output_options, *cases, *shared, *own)
+    with_options = stacked(
+        machine_file, *rows, part_options, units_option, output_options, *cases, *shared, *own
+    )
     text = f"{row.of.__doc__}\n\n    {_OF_EVERY}"
     return click.command(row.word, cls=CommandWithKeyValues, help=text)(with_options(run))
 

@@ -6,8 +6,8 @@ import click
 from click.core import ParameterSource
 
 from kurbel.checks.limits import cases_report
-from kurbel.cli.group import Progress
-from kurbel.cli.options import Spreads
+from kurbel.cli.group import ProgressLine
+from kurbel.cli.options import UncertaintyTexts
 from kurbel.errors import UsageError
 from kurbel.machine import Machine, of_cycle
 from kurbel.machine_file import load
@@ -18,9 +18,18 @@ from kurbel.report.commands import COMMANDS
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame, Subject, over_stroke, rows_where
 from kurbel.tables.named_values import choices_in
-from kurbel.tables.tables import crank_angles
+from kurbel.tables.tables import table_angles
 
-_OF_ANY_SELECTION = {"file", "overrides", "case_name", "cylinder", "units", "comma", "digits", "width"}
+_OF_ANY_SELECTION = {
+    "file",
+    "overrides",
+    "case_name",
+    "cylinder",
+    "units",
+    "comma",
+    "digits",
+    "width",
+}
 """Options that ask for nothing of which a first selection has only a part."""
 
 
@@ -39,7 +48,10 @@ def cases_of(machine: Machine) -> list[Case]:
     """Return the load cases of the file of a machine. Raises UsageError where it has none."""
     if not machine.cases or machine.origin is None:
         raise UsageError("--cases: the file has no 'cases'")
-    return [Case(one) for one in load_cases(machine.origin, [one.name for one in machine.cases])]
+    return [
+        Case(load_case)
+        for load_case in load_cases(machine.origin, [case.name for case in machine.cases])
+    ]
 
 
 def print_report(
@@ -59,7 +71,7 @@ def print_report(
     compare: bool = False,
     cases: bool = False,
     cycle: int | None = None,
-    spreads: Spreads | None = None,
+    spreads: UncertaintyTexts | None = None,
     instead: str = "",
     **own: object,
 ) -> None:
@@ -71,12 +83,22 @@ def print_report(
     those of the file, None for a command without any; instead: the option that asks for other tables instead of that
     over the crank angle; own: what only the report of this command takes.
     """
-    rows = [way for way, value in (("--where", where), ("--over", over), ("--angles", angles)) if value is not None]
+    rows = [
+        way
+        for way, value in (("--where", where), ("--over", over), ("--angles", angles))
+        if value is not None
+    ]
     not_of_cases = [*rows, *(["--case"] if case_name else [])]
     of_table = [*(["--columns"] if columns else []), *(["--cycle"] if cycle else []), *rows]
     for wrong, message in (
-        (cases and not_of_cases, f"--cases has a row for every load case; leave {' and '.join(not_of_cases)} out."),
-        (instead and of_table, f"{instead} has no table over the angle; leave out {' and '.join(of_table)}."),
+        (
+            cases and not_of_cases,
+            f"--cases has a row for every load case; leave {' and '.join(not_of_cases)} out.",
+        ),
+        (
+            instead and of_table,
+            f"{instead} has no table over the angle; leave out {' and '.join(of_table)}.",
+        ),
         (
             columns and (names or (names is not None and not cases)),
             "--columns names columns of the table that --key-values leaves out; name key values in --key-values NAMES.",
@@ -101,20 +123,37 @@ def print_report(
         elif over:
             rows_at = over_stroke(step, end)
         else:
-            rows_at = crank_angles(step, angles, end, max(len(case.cylinders), 1))
+            rows_at = table_angles(step, angles, end, max(len(case.cylinders), 1))
         prose = output.look.format != "csv" or names is not None
-        frame = Frame(command, rows_at, columns, units, "z" if over else "", compare, prose, not instead, names or "")
+        frame = Frame(
+            command,
+            rows_at,
+            columns,
+            units,
+            "z" if over else "",
+            compare,
+            prose,
+            not instead,
+            names or "",
+        )
         report = functions.report(case, frame, **own)
     report = report if cylinder is None else report.of_cylinder(cylinder)
     report = report if names is None or cases else report.key_values_alone()
     if not cases and not instead and spreads is not None and (spreads or case.machine.uncertainty):
         from kurbel.designs.uncertainty import with_uncertainty
 
-        progress = Progress(command)
+        progress = ProgressLine(command)
         report = with_uncertainty(
-            report, case, spreads, units, lambda items: progress.counted(items, "machines", len(items)), bool(names)
+            report,
+            case,
+            spreads,
+            units,
+            lambda items: progress.counted(items, "machines", len(items)),
+            bool(names),
         )
     context = click.get_current_context()
     options = {option.name or "" for option in context.command.params} - _OF_ANY_SELECTION
-    selected = any(context.get_parameter_source(option) is ParameterSource.COMMANDLINE for option in options)
+    selected = any(
+        context.get_parameter_source(option) is ParameterSource.COMMANDLINE for option in options
+    )
     output.write(report, None if selected else COMMANDS[command].first.split())

@@ -6,7 +6,7 @@ import time
 
 import click
 
-from kurbel.cli.group import Progress
+from kurbel.cli.group import ProgressLine
 from kurbel.cli.request import case_of, cases_of
 from kurbel.machine_file.overrides import given
 from kurbel.page.summary import facts_of, subtitle_of, tiles
@@ -14,7 +14,7 @@ from kurbel.page.whole import side_by_side, whole_report
 from kurbel.pictures.picture_source import PictureOptions
 from kurbel.pictures.pictures import PICTURES, pictures, pictures_of
 from kurbel.render import Look
-from kurbel.render.drawing import check_file, check_poster, draw, draw_poster
+from kurbel.render.drawing import check_file, check_poster, draw_output, draw_poster
 from kurbel.render.output import refuse_overwriting, write_entries, write_out
 from kurbel.render.report_page import report_page
 
@@ -33,25 +33,39 @@ def write_page(
     """Write the report on one machine, or on two side by side: the options of the command."""
     if len(files) > 2 or files.count("-") > 1:
         raise click.UsageError("a report is of one machine, or of two side by side.")
-    if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
+    if (
+        file_name is not None
+        and file_name != "-"
+        and not file_name.lower().endswith((".html", ".htm"))
+    ):
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
-    if file_name is None and sys.stdout and sys.stdout.isatty():  # a page of HTML is nothing to read there
-        raise click.UsageError("a report is a page for the browser; give --output NAME.html, or - for this terminal.")
+    if (
+        file_name is None and sys.stdout and sys.stdout.isatty()
+    ):  # a page of HTML is nothing to read there
+        raise click.UsageError(
+            "a report is a page for the browser; give --output NAME.html, or - for this terminal."
+        )
     refuse_overwriting(file_name, files)
     system = units or "metric"
     cases = [case_of(file, case_name, overrides, file_name) for file in files]
     keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
-    with Progress("report") as progress:
+    with ProgressLine("report") as progress:
         if len(cases) == 1:
-            load_cases = cases_of(cases[0].machine) if cases[0].machine.cases and not case_name else []
+            load_cases = (
+                cases_of(cases[0].machine) if cases[0].machine.cases and not case_name else []
+            )
             document = whole_report(cases[0], keys[0], system, step, progress, load_cases)
         else:
             document = side_by_side(cases, keys, system, progress)
     document = document._replace(title=title or document.title)
     # SOURCE_DATE_EPOCH decides the date where a page must come out the same every time
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    today = time.strftime("%Y-%m-%d", time.gmtime(float(epoch)) if epoch.isdecimal() else time.localtime())
-    write_out(report_page(document, Look("html", comma=comma, digits=digits), today), file_name, "utf-8")
+    today = time.strftime(
+        "%Y-%m-%d", time.gmtime(float(epoch)) if epoch.isdecimal() else time.localtime()
+    )
+    write_out(
+        report_page(document, Look("html", comma=comma, digits=digits), today), file_name, "utf-8"
+    )
 
 
 def draw_pictures(
@@ -78,11 +92,16 @@ def draw_pictures(
     if size is not None:
         size = check_poster(size, file_name)
         if set(names) - {"mechanism"} or listed:
-            raise click.UsageError("--poster draws the mechanism alone; leave other pictures and --list out.")
+            raise click.UsageError(
+                "--poster draws the mechanism alone; leave other pictures and --list out."
+            )
         names = ("mechanism",)
     elif file_name is not None:
         check_file(file_name)
-    options, look = PictureOptions(units or "metric", cylinder, angles), Look(comma=comma, digits=digits, width=width)
+    options, look = (
+        PictureOptions(units or "metric", cylinder, angles),
+        Look(comma=comma, digits=digits, width=width),
+    )
     case = None if file is None else case_of(file, case_name, overrides, file_name)
     if case is None or listed:
         kinds = PICTURES if case is None else pictures_of(case, options)
@@ -92,4 +111,4 @@ def draw_pictures(
     if size is not None and file_name is not None:
         facts = tiles(facts_of(case).values(), options.system)
         return draw_poster(next(drawn), subtitle_of(case.machine), facts, look, file_name, size)
-    draw(drawn, look, file_name)
+    draw_output(drawn, look, file_name)

@@ -28,7 +28,7 @@ else:  # typing has it from Python 3.11 on
 
 
 TOO_EXTREME = "these numbers are too large or too small to compute with"
-Values = Mapping[str, Any]
+ValuesByKey = Mapping[str, Any]
 """Values by key: what their forms make of them; REFUSED where one could not be read."""
 
 
@@ -51,7 +51,7 @@ class Key(NamedTuple):
     example: str = ""
     also: tuple[str, ...] = ()
     attribute: str = ""
-    gives: Callable[[Values], dict[str, object]] | None = None
+    gives: Callable[[ValuesByKey], dict[str, object]] | None = None
 
     @property
     def description(self) -> str:
@@ -78,7 +78,7 @@ def required(keys: Keys) -> list[str]:
     return [name for name, key in keys.items() if key.required and name not in replaced]
 
 
-def without(keys: Keys, name: str) -> str:
+def absent_text(keys: Keys, name: str) -> str:
     """Return what holds without a key: its `absent`, or that it (or an alternative) must be given."""
     key = keys[name]
     either = [name, *(other for other, one in keys.items() if one.instead == name)]
@@ -97,7 +97,7 @@ class Rule(NamedTuple):
     place: Union[str, Path]
     broken: Truth
     sentence: str
-    numbers: Values = MappingProxyType({})
+    numbers: ValuesByKey = MappingProxyType({})
     at_key: bool = False
 
     @property
@@ -121,7 +121,13 @@ class Rule(NamedTuple):
                 value, kind = vars(record)[key.attribute], kind or key.form.kind
             else:
                 return found[0]
-            return str(value) if isinstance(value, str) else show(value, kind) if kind else f"{value:g}"
+            return (
+                str(value)
+                if isinstance(value, str)
+                else show(value, kind)
+                if kind
+                else f"{value:g}"
+            )
 
         return Fault(self.path, re.sub(r"\{(\w+)(?::(\w+))?\}", filled, self.sentence), self.at_key)
 
@@ -144,9 +150,13 @@ def broken(rules: Iterable[Rule], record: "Record | None" = None) -> list[Fault]
     return [rule.fault(record) for rule in rules if np.ndim(rule.broken) == 0 and rule.broken]
 
 
-def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
+def _out_of_bounds(keys: Keys, given: ValuesByKey) -> list[Fault]:
     numbers = ((name, keys[name].form, value) for name, value in given.items() if is_number(value))
-    wrong = ((name, value, form.out_of_bounds(value)) for name, form, value in numbers if isinstance(form, NumberForm))
+    wrong = (
+        (name, value, form.out_of_bounds(value))
+        for name, form, value in numbers
+        if isinstance(form, NumberForm)
+    )
     return [Fault((name,), f"{value:g} {what}") for name, value, what in wrong if what]
 
 
@@ -181,7 +191,10 @@ class Record:
         kind, none = Parameter.POSITIONAL_OR_KEYWORD, Parameter.empty
         defaults = [none if one.default is MISSING else one.default for one in each]
         cls.__signature__ = Signature(
-            [Parameter(one.name, kind, default=default, annotation=one.type) for one, default in zip(each, defaults)]
+            [
+                Parameter(one.name, kind, default=default, annotation=one.type)
+                for one, default in zip(each, defaults)
+            ]
         )
 
     def __init__(self, *values: object, **named: object) -> None:
@@ -194,7 +207,9 @@ class Record:
             refused(TOO_EXTREME)
 
     def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError(f"a {type(self).__name__} cannot be changed; make another one by dataclasses.replace")
+        raise AttributeError(
+            f"a {type(self).__name__} cannot be changed; make another one by dataclasses.replace"
+        )
 
     def __repr__(self) -> str:
         """Return the call that makes the record, without what has its default value: a machine has many of these."""
@@ -204,14 +219,18 @@ class Record:
     def _given(self) -> dict[str, object]:
         """Return the values that are not their defaults, by attribute."""
         known = vars(self)
-        return {one.name: known[one.name] for one in fields(self) if known[one.name] is not one.default}
+        return {
+            field.name: known[field.name]
+            for field in fields(self)
+            if known[field.name] is not field.default
+        }
 
     def rules(self) -> Iterator[Rule]:
         """Yield the rules on the values, in addition to the bounds of the entries."""
         return iter(())
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         """Yield the rules on the values by key, before they become a record."""
         return iter(())
 
@@ -249,6 +268,6 @@ class Record:
         return cls(*args, **known)
 
     @classmethod
-    def faults_of_some(cls, given: Values) -> list[Fault]:
+    def faults_of_some(cls, given: ValuesByKey) -> list[Fault]:
         """Return what is wrong with values by key of which some are REFUSED: keys that contradict one another."""
         return broken(contradictions(cls.KEYS, given))

@@ -13,7 +13,9 @@ RATIO = rf"({NUMBER.pattern})\s*(?:/\s*({NUMBER.pattern})|%)"
 WRITTEN = rf"(?:[0-9]{{1,4}}[ -])?{NUMBER.pattern}(?:\s*/\s*{NUMBER.pattern})?"
 """A number before a unit, as inches have it, too: 2 1/4."""
 
-SPACES = "\xa0\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000"
+SPACES = (
+    "\xa0\u1680\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000"
+)
 """White space that no keyboard has; who wrote it meant a space."""
 _ALIKE: dict[int, int | str] = {
     **{code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)},  # full-width forms
@@ -31,7 +33,7 @@ def familiar(text: str) -> str:
     return text if text.isascii() else text.translate(_ALIKE)
 
 
-def plain(text: str) -> str:
+def keyboard_text(text: str) -> str:
     """Return a number or unit as a keyboard writes it, one space wherever there is white space, none at the ends.
 
     >>> plain("\\u22125\\u202fmm ")
@@ -42,9 +44,9 @@ def plain(text: str) -> str:
 
 def parse_number(text: str) -> float:
     """Return the finite number that `text` is; raises UnitError with a fix."""
-    number = NUMBER.fullmatch(text) or NUMBER.fullmatch(plain(text))
+    number = NUMBER.fullmatch(text) or NUMBER.fullmatch(keyboard_text(text))
     if not number:
-        raise UnitError(f"expected a number, got '{text}'{_hint(plain(text))}")
+        raise UnitError(f"expected a number, got '{text}'{_hint(keyboard_text(text))}")
     value = float(number.group())
     if math.isfinite(value):
         return value
@@ -57,7 +59,7 @@ def parse_ratio(text: str) -> float:
     >>> parse_ratio("1/80"), parse_ratio("75 %")
     (0.0125, 0.75)
     """
-    found = None if NUMBER.fullmatch(text) else re.fullmatch(RATIO, plain(text))
+    found = None if NUMBER.fullmatch(text) else re.fullmatch(RATIO, keyboard_text(text))
     if not found:
         return parse_number(text)
     over, under = parse_number(found[1]), parse_number(found[2] or "100")

@@ -38,7 +38,7 @@ REFUSED: Final = Reported.REFUSED
 
 def has_refused(values: Iterable[object]) -> bool:
     """Return whether a value could not be read; others may be arrays, which `in` would compare by their numbers."""
-    return any(one is REFUSED for one in values)
+    return any(value is REFUSED for value in values)
 
 
 class StopReading(Exception):
@@ -73,8 +73,12 @@ class Reading:
         here = tuple(step for step in path if isinstance(step, str))
         if here[:1] == ("cylinders",):  # the places are those within a cylinder
             here = here[2 if here[1:2] == ("each",) else 1 :]
-        found = dict.fromkeys((words, there) for words, there, name in self._places() if name == key)
-        near = [words for words, there in found if here[: len(there)] == there or there[:-1] == here]
+        found = dict.fromkeys(
+            (words, there) for words, there, name in self._places() if name == key
+        )
+        near = [
+            words for words, there in found if here[: len(there)] == there or there[:-1] == here
+        ]
         below = [words for words, there in found if there[: len(here)] == here]
         listed = (near or below)[:3]
         return "it belongs " + " or ".join(listed) if listed else ""
@@ -88,7 +92,9 @@ class Reading:
             return REFUSED
         full = len(self.faults) + 1 >= FAULT_LIMIT
         if full:
-            fault = fault._replace(message=f"{fault.message} (reading stopped after {FAULT_LIMIT} faults)")
+            fault = fault._replace(
+                message=f"{fault.message} (reading stopped after {FAULT_LIMIT} faults)"
+            )
         self.faults.append(fault)
         if full:
             raise StopReading
@@ -114,21 +120,24 @@ class Reading:
         return REFUSED
 
 
-def shown(text: str, most: int = 60) -> str:
+def text_in_one_line(text: str, most: int = 60) -> str:
     """Write a text from the file so that it fits into one line of a message, without control characters."""
     if text.isprintable() and len(text) <= most:
         return text
-    flat = "".join(c if c.isprintable() else " " if c in "\t\r\n" else f"\\u{ord(c):04x}" for c in text[: most + 1])
+    flat = "".join(
+        c if c.isprintable() else " " if c in "\t\r\n" else f"\\u{ord(c):04x}"
+        for c in text[: most + 1]
+    )
     return flat if len(flat) <= most else flat[: most - 3] + "…"
 
 
-def kind_of(value: Node) -> str:
+def node_kind(value: Node) -> str:
     """Return the description of a value of the tree for messages, as in 'got a list'."""
     if isinstance(value, dict):
         return "a mapping" if value else "an empty mapping"
     if isinstance(value, list):
         return "a list" if value else "an empty list"
-    return f"'{shown(str(value))}'"
+    return f"'{text_in_one_line(str(value))}'"
 
 
 def is_nothing(value: Node) -> bool:
@@ -139,4 +148,8 @@ def is_nothing(value: Node) -> bool:
 def glued_hint(value: Node) -> str:
     """Return a hint if a value seems to contain a key without a space after its colon, or an empty text."""
     found = re.search(r"\b[A-Za-z_]\w*:\S", value) if isinstance(value, str) else None
-    return f"; perhaps a space is missing after the colon of '{found.group().split(':')[0]}'" if found else ""
+    return (
+        f"; perhaps a space is missing after the colon of '{found.group().split(':')[0]}'"
+        if found
+        else ""
+    )

@@ -16,12 +16,12 @@ import numpy as np
 
 from kurbel.arrays import Truth
 from kurbel.declared.forms.structures import Likeness, form_of
-from kurbel.declared.keys import Key, Record, Rule, Values
+from kurbel.declared.keys import Key, Record, Rule, ValuesByKey
 
-__all__ = ["Entry", "Record", "Rule", "Values", "alternative", "field", "first_of"]
+__all__ = ["FieldValue", "Record", "Rule", "ValuesByKey", "alternative", "field", "first_of"]
 
 
-Entry = Any
+FieldValue = Any
 """What `field` returns: to a type checker, a value of whatever type its attribute is said to have."""
 
 
@@ -34,8 +34,14 @@ def first_of(rules: Iterable[Rule]) -> Iterator[Rule]:
 
 
 def field(
-    form: Likeness, text: str, symbol: str = "", *, default: object = MISSING, absent: str = "", **more: Any
-) -> Entry:
+    form: Likeness,
+    text: str,
+    symbol: str = "",
+    *,
+    default: object = MISSING,
+    absent: str = "",
+    **more: Any,
+) -> FieldValue:
     """Declare an attribute of a record that is an entry of the machine file.
 
     form: see `form_of`; text: its meaning in one sentence; symbol: of the textbooks; default: its value if the file has

@@ -15,7 +15,15 @@ SYSTEMS: dict[str, Mapping[str, Union[str, tuple[str, ...]]]] = {
     "imperial": {name: kind.imperial or kind.si for name, kind in KINDS.items()},
 }
 """Unit system -> kind -> the unit in which results are shown, or several, chosen by size."""
-_TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3, "m^3": 1.0, "bar/deg": 1e3, "m^3/h": 10 / 3600}
+_TAKEN_FROM = {
+    "m": 10.0,
+    "t": 1e5,
+    "mbar": 0.0,
+    "bar": 1e3,
+    "m^3": 1.0,
+    "bar/deg": 1e3,
+    "m^3/h": 10 / 3600,
+}
 """Larger unit -> base value from which it is used, if that is not 1 of the unit itself."""
 
 _OF_MESSAGES: ContextVar[str] = ContextVar("system of messages", default="metric")

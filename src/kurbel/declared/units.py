@@ -9,10 +9,10 @@ import re
 from functools import cache
 from typing import NamedTuple
 
-from kurbel.declared.numerals import NUMBER, parse_ratio, plain
+from kurbel.declared.numerals import NUMBER, keyboard_text, parse_ratio
 from kurbel.errors import UnitError
 
-Factor = tuple[float, float]
+UnitFactor = tuple[float, float]
 """A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
 
 
@@ -45,13 +45,38 @@ _TORQUES = f"{_FORCES} * {_LENGTHS}"
 KINDS = {
     "length": Kind(1e-9, 1e9, _LENGTHS, "m", ("mm", "m"), "mm", "in", "450 mm"),
     "area": Kind(1e-18, 1e18, _AREAS, "m^2", "cm^2", "cm^2", "in^2"),
-    "mass": Kind(1e-12, 1e18, f"{_MASSES}; tonne, long ton, short ton", "kg", ("kg", "t"), None, "lb", "120 kg"),
-    "force": Kind(0, 1e18, f"{_FORCES}; long tonf, short tonf", "N", ("N", "kN", "MN"), "kgf", "lbf"),
+    "mass": Kind(
+        1e-12,
+        1e18,
+        f"{_MASSES}; tonne, long ton, short ton",
+        "kg",
+        ("kg", "t"),
+        None,
+        "lb",
+        "120 kg",
+    ),
+    "force": Kind(
+        0, 1e18, f"{_FORCES}; long tonf, short tonf", "N", ("N", "kN", "MN"), "kgf", "lbf"
+    ),
     "pressure": Kind(
-        0, 1e15, f"{_PRESSURES}; {_STRESSES}; lb/in2, lb/ft2", "Pa", ("mbar", "bar"), "at", "psi", "5.4 bar"
+        0,
+        1e15,
+        f"{_PRESSURES}; {_STRESSES}; lb/in2, lb/ft2",
+        "Pa",
+        ("mbar", "bar"),
+        "at",
+        "psi",
+        "5.4 bar",
     ),
     "stress": Kind(
-        1e-3, 1e15, f"N/mm2; {_STRESSES}; {_PRESSURES}; lb/in2, lb/ft2", "Pa", "N/mm^2", "kgf/cm^2", "psi", "60 N/mm2"
+        1e-3,
+        1e15,
+        f"N/mm2; {_STRESSES}; {_PRESSURES}; lb/in2, lb/ft2",
+        "Pa",
+        "N/mm^2",
+        "kgf/cm^2",
+        "psi",
+        "60 N/mm2",
     ),
     "time": Kind(1e-12, 1e12, "s, min, h", "s"),
     "angle": Kind(0, 1e6, "deg, °, rad", "deg", written="90 deg"),
@@ -79,9 +104,13 @@ KINDS = {
         "kgf m",
         "lbf ft",
     ),
-    "energy": Kind(0, 1e18, f"J, kJ, MJ; {_TORQUES}; Nm", "J", ("J", "kJ", "MJ"), "kgf m", "lbf ft"),
+    "energy": Kind(
+        0, 1e18, f"J, kJ, MJ; {_TORQUES}; Nm", "J", ("J", "kJ", "MJ"), "kgf m", "lbf ft"
+    ),
     "power": Kind(0, 1e18, "W, kW, MW, PS, hp, kgf m/s", "W", ("W", "kW", "MW"), "PS", "hp"),
-    "inertia": Kind(1e-18, 1e18, f"{_MASSES} * {_AREAS}; lbf in s2, lbf ft s2", "kg m^2", imperial="lb ft^2"),
+    "inertia": Kind(
+        1e-18, 1e18, f"{_MASSES} * {_AREAS}; lbf in s2, lbf ft s2", "kg m^2", imperial="lb ft^2"
+    ),
     "unbalance": Kind(1e-15, 1e18, f"{_MASSES}, mg * {_LENGTHS}", "kg m", imperial="lb in"),
     "gd2": Kind(
         1e-18,
@@ -107,8 +136,12 @@ KINDS = {
         "N m s/rad",
         imperial="lbf ft s/rad",
     ),
-    "volume": Kind(1e-27, 1e27, "m3, dm3, l, cm3, mm3, in3", "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "10 cm3"),
-    "volume_rise": Kind(0, 1e27, "m3, cm3, in3 / deg, rad", "m^3/deg", "cm^3/deg", "cm^3/deg", "in^3/deg"),
+    "volume": Kind(
+        1e-27, 1e27, "m3, dm3, l, cm3, mm3, in3", "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "10 cm3"
+    ),
+    "volume_rise": Kind(
+        0, 1e27, "m3, cm3, in3 / deg, rad", "m^3/deg", "cm^3/deg", "cm^3/deg", "in^3/deg"
+    ),
     "pressure_rise": Kind(
         0,
         1e15,
@@ -120,13 +153,29 @@ KINDS = {
         "10 bar/deg",
     ),
     "pressure_velocity": Kind(
-        0, 1e18, "W/m2, N/mm2 m/s, kgf m/s/cm2, psi ft/s", "W/m^2", "N/mm^2 m/s", "kgf m/s/cm^2", "psi ft/s"
+        0,
+        1e18,
+        "W/m2, N/mm2 m/s, kgf m/s/cm2, psi ft/s",
+        "W/m^2",
+        "N/mm^2 m/s",
+        "kgf m/s/cm^2",
+        "psi ft/s",
     ),
     "density": Kind(1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3"),
     "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", written="20 °C"),
-    "flow": Kind(0, 1e18, "m3, dm3, l, cm3, ft3, in3 / s, min, h", "m^3/s", ("l/min", "m^3/h"), "m^3/h", "ft^3/min"),
+    "flow": Kind(
+        0,
+        1e18,
+        "m3, dm3, l, cm3, ft3, in3 / s, min, h",
+        "m^3/s",
+        ("l/min", "m^3/h"),
+        "m^3/h",
+        "ft^3/min",
+    ),
     "mass_flow": Kind(0, 1e18, f"{_MASSES} / s, min, h", "kg/s", "kg/h", "kg/h", "lb/h"),
-    "molar_mass": Kind(1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"),
+    "molar_mass": Kind(
+        1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"
+    ),
     "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K"),
     "spring": Kind(
         1e-15,
@@ -142,7 +191,7 @@ KINDS = {
 }
 """A value may be 0, and of either sign. An angle of 1e6° is known to 1e-10°; beyond, nothing of it would be left."""
 
-Point = tuple[float, ...]
+DiagramPoint = tuple[float, ...]
 """Numbers of a diagram: two, or three."""
 
 MOST_POINTS = 500_000
@@ -168,7 +217,7 @@ _POUND = 0.45359237
 _LBF = _POUND * GRAVITY
 _MMHG = 133.322387415
 
-_FACTORS: dict[str, Factor] = {
+_FACTORS: dict[str, UnitFactor] = {
     # length in m, volume in m³, mass in kg, time in s, frequency in Hz
     "m": (1, 1),
     "in": (254, 1e4),
@@ -224,7 +273,7 @@ _FACTORS: dict[str, Factor] = {
 }
 """Single units, of which those of every kind are made."""
 
-_PREFIXES: dict[str, Factor] = {
+_PREFIXES: dict[str, UnitFactor] = {
     "G": (1e9, 1),
     "M": (1e6, 1),
     "k": (1e3, 1),
@@ -243,9 +292,9 @@ _FACTORS |= {
 
 _ZEROS = {"°C": 273.15, "°F": 459.67}
 """Temperatures that count from elsewhere than from absolute zero, and by how many of their degrees."""
-_DEGREES: dict[str, Factor] = {"rad": (180, math.pi)}
-_POUND_OF_FORCE: dict[str, Factor] = {"lb": (_LBF, 1)}
-_ELSEWHERE: dict[str, dict[str, Factor]] = {
+_DEGREES: dict[str, UnitFactor] = {"rad": (180, math.pi)}
+_POUND_OF_FORCE: dict[str, UnitFactor] = {"lb": (_LBF, 1)}
+_ELSEWHERE: dict[str, dict[str, UnitFactor]] = {
     **dict.fromkeys(("angle", "volume_rise"), _DEGREES),
     # only a force gives a pressure or a torque: there the pound of everyday English can mean nothing else
     **dict.fromkeys(("pressure", "stress", "torque", "spring"), _POUND_OF_FORCE),
@@ -269,7 +318,7 @@ ZEROED_UNITS = {
 
 
 @cache
-def _units_of(kind: str) -> dict[str, Factor]:
+def _units_of(kind: str) -> dict[str, UnitFactor]:
     """Return the units of a kind by name."""
     names: list[str] = []
     for listed in KINDS[kind].units.split("; "):
@@ -279,7 +328,7 @@ def _units_of(kind: str) -> dict[str, Factor]:
     return {name: _factor(name, kind) for name in names}
 
 
-def _factor(unit: str, kind: str) -> Factor:
+def _factor(unit: str, kind: str) -> UnitFactor:
     """Return multiplier and divisor of a product of single units, such as `kgf m/s/cm2`."""
     if kind == "spring":  # height over pressure, which may be a quotient itself
         height, _, pressure = unit.partition("/")
@@ -298,8 +347,17 @@ def _factor(unit: str, kind: str) -> Factor:
 
 def _normal(unit: str) -> str:
     """Write `kg·m²`, `kg*m^2` and `kg  m2` alike."""
-    unit = plain(unit)
-    for sign, ours in (("⁻¹", "-1"), ("²", "2"), ("³", "3"), ("^", ""), ("·", " "), ("*", " "), ("µ", "u"), ("μ", "u")):
+    unit = keyboard_text(unit)
+    for sign, ours in (
+        ("⁻¹", "-1"),
+        ("²", "2"),
+        ("³", "3"),
+        ("^", ""),
+        ("·", " "),
+        ("*", " "),
+        ("µ", "u"),
+        ("μ", "u"),
+    ):
         unit = unit.replace(sign, ours)
     unit = re.sub(r"\bdeg ?(?=[CF]$)", "°", unit.replace("/(kg K)", "/kg K"))
     unit = re.sub(r" (?=(H2O|Hg)\b)", "", unit)
@@ -308,7 +366,7 @@ def _normal(unit: str) -> str:
 
 
 @cache
-def unit_factor(unit: str, kind: str) -> Factor:
+def unit_factor(unit: str, kind: str) -> UnitFactor:
     """Return multiplier and divisor that turn a value in `unit` into the base of `kind`.
 
     Raises UnitError with the known units and, where the unit is one of another kind, that kind.
@@ -317,7 +375,9 @@ def unit_factor(unit: str, kind: str) -> Factor:
     if name in known:
         return known[name]
     names = ", ".join([*known][:8]) + (", …" if len(known) > 8 else "")
-    raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {names}){unit_hint(name, kind)}")
+    raise UnitError(
+        f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {names}){unit_hint(name, kind)}"
+    )
 
 
 def kind_name(kind: str) -> str:
@@ -355,21 +415,33 @@ def parse_quantity(text: str, kind: str) -> float:
     """
     if kind == "ratio":
         return parse_ratio(text)
-    stripped = plain(text)
+    stripped = keyboard_text(text)
     found = _split(stripped)
     if not found:
-        raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
+        raise UnitError(
+            f"expected a number with its unit, such as '{kind_example(kind)}', got '{text}'"
+        )
     value, unit = found
     if not unit:
         likely = (one for one, least in _FITTING.get(kind, ()) if abs(value) >= least)
         fitting = next(likely, unit_example(kind))
-        raise UnitError(f"{stripped} has no unit; write it with one, such as '{stripped} {fitting}'")
+        raise UnitError(
+            f"{stripped} has no unit; write it with one, such as '{stripped} {fitting}'"
+        )
     if re.match(r",[0-9]+(?![0-9.,])", unit):
         raise UnitError(f"'{stripped}' has a decimal comma; write {stripped.replace(',', '.', 1)}")
-    if between := "commas" if re.match(",[0-9]", unit) else "spaces" if re.match("[0-9]{3}(?![0-9])", unit) else "":
+    if (
+        between := "commas"
+        if re.match(",[0-9]", unit)
+        else "spaces"
+        if re.match("[0-9]{3}(?![0-9])", unit)
+        else ""
+    ):
         raise UnitError(f"'{stripped}' has {between} between thousands; leave them out")
     if unit[0] in "0123456789._:" and not unit.startswith("1/"):
-        raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{stripped}'")
+        raise UnitError(
+            f"expected a number with its unit, such as '{kind_example(kind)}', got '{stripped}'"
+        )
     up, down = unit_factor(unit, kind)
     value += zero_of(unit)
     if not math.isfinite(value * up / down):
@@ -398,18 +470,18 @@ def written_unit(text: str) -> str:
     >>> written_unit("5.4 at"), written_unit("2 1/4 in"), written_unit("2 %"), written_unit("1/200")
     ('at', 'in', '%', '')
     """
-    _, unit = _split(plain(text)) or (0.0, "")
+    _, unit = _split(keyboard_text(text)) or (0.0, "")
     return "" if re.match(r"/\s*[0-9.]", unit) else unit
 
 
-def example(kind: str) -> str:
+def kind_example(kind: str) -> str:
     """Return a value of this kind as a person would write it, for messages and for the schema."""
     return KINDS[kind].written or f"10 {_normal(KINDS[kind].si)}"
 
 
 def unit_example(kind: str) -> str:
     """Return its unit."""
-    return example(kind).partition(" ")[2]
+    return kind_example(kind).partition(" ")[2]
 
 
 def kinds() -> tuple[str, ...]:

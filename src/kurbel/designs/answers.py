@@ -11,9 +11,9 @@ from typing import Any, NamedTuple, Union
 import numpy as np
 
 from kurbel.arrays import Indices
-from kurbel.checks.limits import breaks, holders, without
+from kurbel.checks.limits import breaks, holders, no_such_value
 from kurbel.declared.forms.figures import MACHINE, scoped
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import units_of
 from kurbel.designs.binding import Batch, Binder, KeyColumn
 from kurbel.errors import KurbelError, MachineFileError, UsageError
@@ -25,7 +25,7 @@ from kurbel.machine.origin import Origin
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of, size_of
 from kurbel.quantities import every_quantity
-from kurbel.quantity import Quantity, ambiguity, called, in_sentences, joined
+from kurbel.quantity import Quantity, ambiguity, called, in_sentences, rejoined_names
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Subject, too_large
@@ -42,9 +42,9 @@ _FEWEST, _MOST = 3, 250
 _LARGE, _MOST_LARGE = {"stress", "bearings"}, 100
 """Commands with many quantities at the nodes, and most machines of a batch for them: 1000 would need a gigabyte."""
 
-Value = Union[float, tuple[float, ...], None]
+DesignValue = Union[float, tuple[float, ...], None]
 """A key value in SI: a number, or a list; None where there is none."""
-Values = Union[Sequence[Value], str]
+DesignValues = Union[Sequence[DesignValue], str]
 """The key values of a machine, or the reason why it has none."""
 
 
@@ -88,7 +88,7 @@ def requested_answers(
     case = Case(machine)
     once: dict[tuple[str, str], list[Answer]] = {}
     if names:
-        known = joined(names, every_quantity().all_key_values)
+        known = rejoined_names(names, every_quantity().all_key_values)
         found = [one for name in known for one in _named(case, name, option)]
     else:
         found = [*_holding(case, "forces" if machine.cylinders else "flywheel")]
@@ -108,15 +108,23 @@ def _named(case: Case, name: str, option: str) -> list[tuple[Answer, object]]:
     ids = called(own, declared)
     if not ids or ambiguity(own, ids):
         near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
-        raise UsageError(f"{option}: {ambiguity(own, ids) or f'no key value {shown(name)!r}{near}'}")
+        raise UsageError(
+            f"{option}: {ambiguity(own, ids) or f'no key value {text_in_one_line(name)!r}{near}'}"
+        )
     commands = every_quantity().commands_of(ids[0])
-    for command in ("forces", *commands) if "forces" in commands and case.machine.cylinders else commands:
+    for command in (
+        ("forces", *commands) if "forces" in commands and case.machine.cylinders else commands
+    ):
         if found := [*_holding(case, command, ids[0], owner)]:
             return found
-    raise UsageError(f"{option}: this machine has no {shown(name)}; kurbel check shows why")
+    raise UsageError(
+        f"{option}: this machine has no {text_in_one_line(name)}; kurbel check shows why"
+    )
 
 
-def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, object]]:
+def _holding(
+    case: Case, command: str, id: str = "", owner: str = ""
+) -> Iterator[tuple[Answer, object]]:
     """Yield a key value of every subject of a command that has it, or of its owner; without id all that it prints.
 
     Each comes with its value for this machine, or the error, since other designs may have a value.
@@ -137,7 +145,9 @@ def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterato
 # their values
 
 
-def answered(binder: Binder, columns: Sequence[KeyColumn], requested: Sequence[Answer]) -> list[Values]:
+def answered(
+    binder: Binder, columns: Sequence[KeyColumn], requested: Sequence[Answer]
+) -> list[DesignValues]:
     """Return the key values of the designs with these values of the keys of a binder.
 
     In older versions of numpy rounding depends on the length of an array, and so on the designs that are computed
@@ -149,14 +159,16 @@ def answered(binder: Binder, columns: Sequence[KeyColumn], requested: Sequence[A
 
 
 @np.errstate(all="ignore")
-def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[int, Values]:
+def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[int, DesignValues]:
     """Return the key values of each of many machines, by its row."""
-    found: dict[int, Values] = {}
+    found: dict[int, DesignValues] = {}
     most = _MOST_LARGE if any(one.command in _LARGE for one in requested) else _MOST
     for batch in batches:
         if not is_slow(batch.machine, requested):
             for start in range(0, len(batch.rows), most):
-                found |= _together(batch, np.arange(start, min(start + most, len(batch.rows))), requested)
+                found |= _together(
+                    batch, np.arange(start, min(start + most, len(batch.rows))), requested
+                )
         for place, row in enumerate(batch.rows):
             if row not in found:
                 found[row] = answered_alone(batch.one(place), requested)
@@ -171,14 +183,19 @@ def is_slow(machine: Machine, requested: Sequence[Answer]) -> bool:
     """
     if any(one.command == "torsion" for one in requested):
         return True
-    return any(one.mechanism.name not in _IN_BATCHES for one in machine.cylinders) or any(
-        isinstance(one, Trace)
-        or (isinstance(one, Card) and sum(len(line.fractions) for line in one.lines) > _MOST_POINTS)
-        for one in machine.chambers
+    return any(cylinder.mechanism.name not in _IN_BATCHES for cylinder in machine.cylinders) or any(
+        isinstance(chamber, Trace)
+        or (
+            isinstance(chamber, Card)
+            and sum(len(line.fractions) for line in chamber.lines) > _MOST_POINTS
+        )
+        for chamber in machine.chambers
     )
 
 
-def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dict[int, Values]:
+def _together(
+    batch: Batch, places: Indices, requested: Sequence[Answer]
+) -> dict[int, DesignValues]:
     """Return the key values of a batch by its rows, without machines that fail or have a value that is not finite."""
     if len(places) < _FEWEST:
         return {}
@@ -187,24 +204,32 @@ def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dic
         columns = _values(Case(machine, len(places)), requested)
     except (KurbelError, ArithmeticError, RuntimeWarning):
         half = len(places) // 2
-        return _together(batch, places[:half], requested) | _together(batch, places[half:], requested)
+        return _together(batch, places[:half], requested) | _together(
+            batch, places[half:], requested
+        )
     fit = np.ones(len(places), dtype=bool)
-    for one in machine.cylinders:
-        fit &= ~np.asarray(may_lock(one))  # whether it does is known of a single machine only
-    each: list[Sequence[Value]] = []
+    for cylinder in machine.cylinders:
+        fit &= ~np.asarray(may_lock(cylinder))  # whether it does is known of a single machine only
+    each: list[Sequence[DesignValue]] = []
     for value in columns:
-        if isinstance(value, tuple) and value and isinstance(value[0], tuple):  # a list of each machine
+        if (
+            isinstance(value, tuple) and value and isinstance(value[0], tuple)
+        ):  # a list of each machine
             each.append(value)
         elif value is None or isinstance(value, tuple):
             each.append([value] * len(places))
         else:
             fit &= np.isfinite(value)
             each.append(np.broadcast_to(value, fit.shape).tolist())
-    return {batch.rows[place]: values for place, values, good in zip(places.tolist(), zip(*each), fit.tolist()) if good}
+    return {
+        batch.rows[place]: values
+        for place, values, good in zip(places.tolist(), zip(*each), fit.tolist())
+        if good
+    }
 
 
 @np.errstate(all="ignore")
-def answered_alone(machine: Machine, requested: Sequence[Answer]) -> Values:
+def answered_alone(machine: Machine, requested: Sequence[Answer]) -> DesignValues:
     """Return the key values of a machine by itself."""
     try:
         found = _values(Case(machine), requested)
@@ -222,7 +247,9 @@ def _values(case: Case, requested: Sequence[Answer]) -> list[Any]:
     """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
     known: dict[tuple[str, str], Subject] = {}
     for command in dict.fromkeys(one.command for one in requested):
-        known |= {(command, subject.name): subject for subject in subjects_of(case, command, pistons=True)}
+        known |= {
+            (command, subject.name): subject for subject in subjects_of(case, command, pistons=True)
+        }
     values = []
     for one in requested:
         subject = known.get((one.command, one.subject))
@@ -236,7 +263,7 @@ def _values(case: Case, requested: Sequence[Answer]) -> list[Any]:
 
 # the machine file of which keys vary
 
-Cell = Union[Value, str]
+Cell = Union[DesignValue, str]
 """A value of a row; a text for an input that is a word."""
 
 
@@ -269,13 +296,13 @@ class Limit(NamedTuple):
     bound: float
 
 
-class Found(NamedTuple):
+class DesignResult(NamedTuple):
     """The key values of a design in SI, or why it fails.
 
     broken: names of the limits that it breaks; unjudged: the limits that cannot be judged, each with the reason.
     """
 
-    values: Sequence[Value] = ()
+    values: Sequence[DesignValue] = ()
     failure: str = ""
     broken: tuple[str, ...] = ()
     unjudged: tuple[str, ...] = ()
@@ -306,7 +333,7 @@ class Study:
                 self.binder = Binder(origin, keys, texts, cases)
                 self.answers = requested_answers(self.binder.machine, names, with_angles, option)
                 self.limits = list(_limits_of(self.binder.machine))
-                self.every = (*self.answers, *(one.answer for one in self.limits))
+                self.every = (*self.answers, *(limit.answer for limit in self.limits))
                 return
             except KurbelError as error:
                 failed.append(error)
@@ -315,7 +342,7 @@ class Study:
         raise UsageError(str(failed[0])) if isinstance(failed[0], MachineFileError) else failed[0]
 
     @cached_property
-    def first(self) -> Sequence[Value]:
+    def first(self) -> Sequence[DesignValue]:
         """The key values of the first valid machine."""
         found = answered_alone(self.binder.machine, self.answers)
         return [None] * len(self.answers) if isinstance(found, str) else found
@@ -326,26 +353,33 @@ class Study:
         An id has the name of its subject before it if it is one of several, or was requested of this subject alone.
         """
         sizes = [0.0] * len(self.answers) if system == "si" else map(size_of, self.first)
-        units = units_of([(one.kind, one.quantity.family, size) for one, size in zip(self.answers, sizes)], system)
-        ids = [one.quantity.id for one in self.answers if not one.angle]
+        units = units_of(
+            [(one.kind, one.quantity.family, size) for one, size in zip(self.answers, sizes)],
+            system,
+        )
+        ids = [answer.quantity.id for answer in self.answers if not answer.angle]
         heads = []
         for one, unit in zip(self.answers, units):
             id = f"{one.quantity.id}_at" if one.angle else one.quantity.id
             owned = one.alone or ids.count(one.quantity.id) > 1
-            heads.append(Head(f"{one.owner}.{id}" if owned else id, unit, one.kind, listed=one.quantity.listed))
+            heads.append(
+                Head(
+                    f"{one.owner}.{id}" if owned else id, unit, one.kind, listed=one.quantity.listed
+                )
+            )
         return heads
 
-    def of(self, columns: Sequence[KeyColumn]) -> list[Found]:
+    def of(self, columns: Sequence[KeyColumn]) -> list[DesignResult]:
         """Return what the designs with these values of the keys give; for the same digits give the same rows."""
         count = len(self.answers)
         return [
-            Found(failure=values)
+            DesignResult(failure=values)
             if isinstance(values, str)
-            else Found(values[:count], "", *self._judged(values[count:]))
+            else DesignResult(values[:count], "", *self._judged(values[count:]))
             for values in answered(self.binder, columns, self.every)
         ]
 
-    def _judged(self, values: Sequence[Value]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    def _judged(self, values: Sequence[DesignValue]) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Return the limits that are broken, and those that cannot be judged; values: one for each limit."""
         known = {limit.name for limit, value in zip(self.limits, values) if value is not None}
         broken = [
@@ -354,7 +388,7 @@ class Study:
             if isinstance(value, (int, float)) and breaks(answer.quantity, bound, value)
         ]
         unjudged = [
-            f"limits.{name}: {without(name, answer.quantity.id)}"
+            f"limits.{name}: {no_such_value(name, answer.quantity.id)}"
             for name, answer, _ in self.limits
             if name not in known
         ]
@@ -371,5 +405,7 @@ def _limits_of(machine: Machine) -> Iterator[Limit]:
         except UsageError as error:
             raise UsageError(f"limits.{name}: {error}") from None
         if not found:
-            raise UsageError(f"limits.{name}: {without(name, scoped(name)[1])}")
-        yield from (Limit(name, Answer(one.quantity, one.command, one.subject.name), bound) for one in found)
+            raise UsageError(f"limits.{name}: {no_such_value(name, scoped(name)[1])}")
+        yield from (
+            Limit(name, Answer(one.quantity, one.command, one.subject.name), bound) for one in found
+        )

@@ -1,4 +1,4 @@
-"""`kurbel.sweep` and `kurbel.find`: many designs of a machine from Python."""
+"""`kurbel.sweep` and `kurbel.find_solutions`: many designs of a machine from Python."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -9,9 +9,9 @@ import numpy as np
 from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Binder
 from kurbel.designs.find import Solutions
-from kurbel.designs.find import find as find_in
+from kurbel.designs.find import find_solutions as find_in
 from kurbel.designs.plan import Input
-from kurbel.designs.sweep import Spec, Sweep, rows_of
+from kurbel.designs.sweep import Spec, Sweep, computed_rows
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
@@ -45,12 +45,14 @@ def sweep(
     names = (columns,) if isinstance(columns, str) else tuple(columns)
     axis = tuple(_inputs(Binder(origin, tuple(inputs), start), inputs))
     found = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
-    rows = list(rows_of(found, range(found.rows)))
+    rows = list(computed_rows(found, range(found.rows)))
     arrays: dict[str, Any] = {}
     for head, values in zip(found.heads, zip(*(row.values for row in rows))):
         if not head.input:
-            listed = any(isinstance(one, tuple) for one in values)
-            arrays[head.id] = np.fromiter(values, object) if listed else np.array(values, dtype=float)
+            listed = any(isinstance(value, tuple) for value in values)
+            arrays[head.id] = (
+                np.fromiter(values, object) if listed else np.array(values, dtype=float)
+            )
     texts = dict(zip(found.texts, zip(*(row.texts for row in rows))))
     arrays["failure"] = np.array(texts["failure"])
     if "keeps" in texts:
@@ -88,7 +90,9 @@ def find(
             (kind,) = Binder(origin, [key], texts_at(origin, [key])).kinds
             unit = SI.get(kind, "")
         texts.append(f"{key}={low}:{high} {unit}".rstrip())
-    equations, conditions = ([one] if isinstance(one, str) and one else [*one] for one in (wanted, where))
+    equations, conditions = (
+        [one] if isinstance(one, str) and one else [*one] for one in (wanted, where)
+    )
     return find_in(origin, texts, equations, least, greatest, conditions)
 
 
@@ -96,7 +100,9 @@ def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
     """Return the file that a machine was read from. Raises UsageError where it was not."""
     origin = machine_of(machine).origin
     if origin is None:
-        raise UsageError("only a machine that was read can vary by its keys: take it from kurbel.load or kurbel.loads")
+        raise UsageError(
+            "only a machine that was read can vary by its keys: take it from kurbel.load or kurbel.loads"
+        )
     return origin
 
 
@@ -106,7 +112,9 @@ def _inputs(binder: Binder, inputs: Mapping[str, object]) -> Iterator[Input]:
     count = max(map(len, columns), default=0)
     if not count or any(column.shape not in ((count,), (1,)) for column in columns):
         each = ", ".join(f"{key} has {len(column)}" for key, column in zip(inputs, columns))
-        raise UsageError(f"give as many values of every key, one or more of them; {each or 'there is none'}")
+        raise UsageError(
+            f"give as many values of every key, one or more of them; {each or 'there is none'}"
+        )
     for key, column, kind in zip(inputs, columns, binder.kinds):
         values = np.broadcast_to(column, count).tolist()
         if column.dtype.kind in "fiu":

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Indices, Indivisible
-from kurbel.declared.forms.structures import Given, Maker
+from kurbel.declared.forms.structures import Maker, ReadMapping
 from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import Reading, StopReading
@@ -68,7 +68,9 @@ class Binder:
     Raises UsageError for an unknown key.
     """
 
-    def __init__(self, origin: Origin, keys: Sequence[str], start: Sequence[str], cases: bool = False) -> None:
+    def __init__(
+        self, origin: Origin, keys: Sequence[str], start: Sequence[str], cases: bool = False
+    ) -> None:
         self._origin, self._keys, self._start, self._cases = origin, keys, start, cases
         root = read_values(self._with(start), reading_of(origin))
         self.machine: Machine = root.made
@@ -80,22 +82,35 @@ class Binder:
             owner, name, inner = _owner(path_of(key), mappings)
             form = owner.form.keys[name].form
             text = value_at(owner.mapping.get(name), inner)
-            bare = inner and isinstance(text, str) and NUMBER.fullmatch(text)  # the number of a point, say
-            self.kinds.append(form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else ""))
-            self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
+            bare = (
+                inner and isinstance(text, str) and NUMBER.fullmatch(text)
+            )  # the number of a point, say
+            self.kinds.append(
+                form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else "")
+            )
+            self._numeric.append(
+                not inner and form.number is not None and not isinstance(owner.made, Indivisible)
+            )
         self._words, self._root = self._structure(start), root
 
     def columns(self, numbers: Array) -> list[KeyColumn]:
         """Return columns of numbers (rows, keys) in the base of the kinds of all keys."""
         rows = np.arange(len(numbers))
         each = zip(self._keys, self.kinds, numbers.T)
-        return [KeyColumn(Input(key, (), tuple(own.tolist()), SI[kind]), own, rows) for key, kind, own in each]
+        return [
+            KeyColumn(Input(key, (), tuple(own.tolist()), SI[kind]), own, rows)
+            for key, kind, own in each
+        ]
 
     def bound(self, columns: Sequence[KeyColumn]) -> tuple[list[Batch], dict[int, str]]:
         """Return the machines of rows in batches, and why other rows have none; columns: the values of the keys."""
         found, failures, rows = list[Batch](), dict[int, str](), np.arange(len(columns[0].places))
-        texts = (map(column.text, rows.tolist()) for column, number in zip(columns, self._numeric) if not number)
-        words = [np.unique(list(each), return_inverse=True)[1] for each in texts]
+        texts = (
+            map(column.text, rows.tolist())
+            for column, number in zip(columns, self._numeric)
+            if not number
+        )
+        words = [np.unique(list(text), return_inverse=True)[1] for text in texts]
         for places in _alike(words, rows):
             batches, apart = self._together(columns, places) if len(places) > 1 else ([], places)
             found += batches
@@ -121,24 +136,36 @@ class Binder:
         except UsageError as error:
             return str(error)
         except MachineFileError:
-            faults = (f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in reading.faults)
+            faults = (
+                f"{path_text(fault.path)}: {fault.message}" if fault.path else fault.message
+                for fault in reading.faults
+            )
             return "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
         return machine
 
     def _structure(self, texts: Iterable[str]) -> list[str]:
         """Return the texts of a row with the numbers of the first machine: those of rows of one structure agree."""
-        return [one if number else text for text, one, number in zip(texts, self._start, self._numeric)]
+        return [
+            one if number else text for text, one, number in zip(texts, self._start, self._numeric)
+        ]
 
-    def _together(self, columns: Sequence[KeyColumn], places: Indices) -> tuple[list[Batch], Indices]:
+    def _together(
+        self, columns: Sequence[KeyColumn], places: Indices
+    ) -> tuple[list[Batch], Indices]:
         """Return the machines of rows with the same words, and the rows that must be read one by one."""
         within = np.ones(len(places), dtype=bool)
-        slots: list[tuple[Given, str, NumberForm, Array]] = []
+        slots: list[tuple[ReadMapping, str, NumberForm, Array]] = []
         try:
             words = self._structure(column.text(places[0]) for column in columns)
             if words != self._words:
-                self._words, self._root = words, read_values(self._with(words), reading_of(self._origin))
+                self._words, self._root = (
+                    words,
+                    read_values(self._with(words), reading_of(self._origin)),
+                )
             mappings = list(_mappings(self._root))
-            for column in (column for column, is_number in zip(columns, self._numeric) if is_number):
+            for column in (
+                column for column, is_number in zip(columns, self._numeric) if is_number
+            ):
                 owner, name, _ = _owner(path_of(column.input.key), mappings)
                 number = owner.form.keys[name].form.number
                 if number is None:
@@ -147,17 +174,31 @@ class Binder:
                 within &= number.within(numbers)
                 # a cylinder that is `like` the one of a key gets its numbers, too
                 text = owner.mapping.get(name)
-                alike = (one for one in mappings if _reads(one, name) and one.mapping.get(name) is text)
+                alike = (
+                    mapping
+                    for mapping in mappings
+                    if _reads(mapping, name) and mapping.mapping.get(name) is text
+                )
                 slots += [(one, name, number, numbers) for one in alike]
             for one, name, number, numbers in slots:
-                one.values[name] = number.becomes(numbers[within], "") if number.becomes else numbers[within]
+                one.values[name] = (
+                    number.becomes(numbers[within], "") if number.becomes else numbers[within]
+                )
             maker = Maker(Reading(), int(within.sum()))
             with np.errstate(all="ignore"):
                 machine = maker.made(self._root)
             if maker.reading.faults or not within.any():
                 return [], places
         # a formula that works for a single machine only: these rows are read one by one
-        except (KurbelError, StopReading, TypeError, ValueError, AttributeError, ArithmeticError, IndexError):
+        except (
+            KurbelError,
+            StopReading,
+            TypeError,
+            ValueError,
+            AttributeError,
+            ArithmeticError,
+            IndexError,
+        ):
             return [], places
         read, batches = places[within], []
         for fit in _with_same_branches(machine, np.flatnonzero(~maker.broken)):
@@ -187,7 +228,9 @@ def _alike(columns: Sequence[Array | Indices], places: Indices) -> list[Indices]
     """Return places in groups, in each of which every column has one value."""
     groups = [places] if len(places) else []
     for column in columns:
-        groups = [group[column[group] == value] for group in groups for value in np.unique(column[group])]
+        groups = [
+            group[column[group] == value] for group in groups for value in np.unique(column[group])
+        ]
     return groups
 
 
@@ -205,9 +248,14 @@ def _with_same_branches(machine: Machine, fit: Indices) -> list[Indices]:
 
     changed(machine, coded)
     for one, other in combinations(machine.cylinders, 2):
-        places = [0.0 if each.axial_position is None else each.axial_position for each in (one, other)]
+        places = [
+            0.0 if each.axial_position is None else each.axial_position for each in (one, other)
+        ]
         turned = one.bank_angle - other.bank_angle
-        for apart in map(np.abs, (one.crank_position - other.crank_position - turned, turned, places[0] - places[1])):
+        for apart in map(
+            np.abs,
+            (one.crank_position - other.crank_position - turned, turned, places[0] - places[1]),
+        ):
             if np.ndim(apart):
                 codes.append(np.minimum(apart, np.abs(apart - 360.0)) < 1e-9)
     return _alike(codes, fit)
@@ -222,9 +270,9 @@ def _column(values: Array) -> Array | list[object]:
 # the place of a key
 
 
-def _mappings(value: object) -> Iterator[Given]:
+def _mappings(value: object) -> Iterator[ReadMapping]:
     """Yield every mapping as read, inner ones first."""
-    if isinstance(value, Given):
+    if isinstance(value, ReadMapping):
         for one in value.values.values():
             yield from _mappings(one)
         yield value
@@ -233,22 +281,26 @@ def _mappings(value: object) -> Iterator[Given]:
             yield from _mappings(one)
 
 
-def _reads(given: Given, name: object) -> bool:
+def _reads(given: ReadMapping, name: object) -> bool:
     """Return whether a key is one of the record itself, and given."""
     return name in given.values and name in given.form.keys
 
 
-def _owner(path: Path, mappings: Sequence[Given]) -> tuple[Given, str, Path]:
+def _owner(path: Path, mappings: Sequence[ReadMapping]) -> tuple[ReadMapping, str, Path]:
     """Return the innermost mapping whose record reads a key, its own key on the path, and the rest of the path."""
     owner = None
-    for one in mappings:
-        depth = len(one.path)
-        if one.path == path[:depth] and depth < len(path) and _reads(one, path[depth]):
-            owner = one if owner is None or depth > len(owner.path) else owner
+    for mapping in mappings:
+        depth = len(mapping.path)
+        if mapping.path == path[:depth] and depth < len(path) and _reads(mapping, path[depth]):
+            owner = mapping if owner is None or depth > len(owner.path) else owner
     if owner is None:
         raise UsageError(f"--vary {path_text(path)}: this key has no value that could be varied")
     if len(owner.path) < len(path) - 1:  # a key next to the deciding one belongs to its mapping
-        for one in mappings:
-            if len(one.path) == len(path) and one.path[:-1] == path[:-1] and _reads(one, path[-1]):
-                return one, str(path[-1]), ()
+        for mapping in mappings:
+            if (
+                len(mapping.path) == len(path)
+                and mapping.path[:-1] == path[:-1]
+                and _reads(mapping, path[-1])
+            ):
+                return mapping, str(path[-1]), ()
     return owner, str(path[len(owner.path)]), path[len(owner.path) + 1 :]

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.numerals import plain
-from kurbel.declared.reading import shown
+from kurbel.declared.numerals import keyboard_text
+from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Cell, Design, Head
@@ -36,7 +36,7 @@ _OF_WORDS = ("=", "==", "!=", "≠")
 _CONDITION = re.compile(rf"(.+?)\s*({'|'.join(_RELATIONS)})\s*(.*)")
 
 
-class Condition(NamedTuple):
+class RowCondition(NamedTuple):
     """A comparison of a column, counted through the values and the texts, with a value in its unit, or with a text."""
 
     place: int
@@ -50,45 +50,56 @@ class Condition(NamedTuple):
         return known is not None and _RELATIONS[self.relation](known, self.value)
 
 
-def parts_of(text: str) -> tuple[str, str, str]:
+def condition_parts(text: str) -> tuple[str, str, str]:
     """Return the column, the relation and the value of a condition; raises UsageError."""
-    found = _CONDITION.fullmatch(plain(text).strip())
+    found = _CONDITION.fullmatch(keyboard_text(text).strip())
     if not found:
         raise UsageError(
-            f"--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', got {shown(text)!r}"
+            f"--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', got {text_in_one_line(text)!r}"
         )
     name, relation, written = (part.strip() for part in found.groups())
     return name, relation, written
 
 
-def read_condition(text: str, heads: Sequence[Head], option: str = "--where") -> Condition:
+def read_condition(text: str, heads: Sequence[Head], option: str = "--where") -> RowCondition:
     """Read `c_max < 5 m/s` or, for a column of words, `keeps = yes`; raises UsageError."""
-    name, relation, written = parts_of(text)
-    place, where = place_of(name, heads, option), f"{option} {shown(text)}"
+    name, relation, written = condition_parts(text)
+    place, where = place_of(name, heads, option), f"{option} {text_in_one_line(text)}"
     head = heads[place]
     if not head.kind:
         if relation not in _OF_WORDS:
-            raise UsageError(f"{where}: {name} has words, of which none is less than another; write = or !=")
+            raise UsageError(
+                f"{where}: {name} has words, of which none is less than another; write = or !="
+            )
         if name == "keeps" and written not in ("yes", "no", ""):
             raise UsageError(f"{where}: keeps is yes, no, or empty where a limit cannot be judged")
-        return Condition(place, relation, written)
+        return RowCondition(place, relation, written)
     try:
-        value = math.inf if head.input and written == INFINITE else parse_quantity(written, head.kind)
+        value = (
+            math.inf if head.input and written == INFINITE else parse_quantity(written, head.kind)
+        )
     except UnitError as error:
         raise UsageError(f"{where}: {error}") from None
-    return Condition(place, relation, float(convert(value, head.kind, head.unit)))
+    return RowCondition(place, relation, float(convert(value, head.kind, head.unit)))
 
 
 def place_of(name: str, heads: Sequence[Head], option: str) -> int:
     """Return which column of single values a name or a printed symbol is; raises UsageError."""
-    ids = tuple(one.id for one in heads)
+    ids = tuple(head.id for head in heads)
     owner, _, own = name.rpartition(".")
-    meant = (name, *(f"{owner}.{id}".lstrip(".") for id in called(own, every_quantity().all_key_values)))
+    meant = (
+        name,
+        *(f"{owner}.{id}".lstrip(".") for id in called(own, every_quantity().all_key_values)),
+    )
     place = next((ids.index(one) for one in meant if one in ids), None)
     if place is None:
-        raise UsageError(f"{option}: no column '{shown(name)}'{did_you_mean(name, ids)} (there are {', '.join(ids)})")
+        raise UsageError(
+            f"{option}: no column '{text_in_one_line(name)}'{did_you_mean(name, ids)} (there are {', '.join(ids)})"
+        )
     if heads[place].listed:
-        raise UsageError(f"{option}: {ids[place]} is a list of values, which is neither more nor less than another one")
+        raise UsageError(
+            f"{option}: {ids[place]} is a list of values, which is neither more nor less than another one"
+        )
     return place
 
 
@@ -123,13 +134,17 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
 def pareto_front(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:
     """Yield the Pareto front: the rows than which no other is better in one aim and as good in all."""
     given = [row for row in rows if not any(aim.of(row)[0] for aim in aims)]
-    costs = np.array([[aim.of(row)[1] for aim in aims] for row in given]).reshape(len(given), len(aims))
+    costs = np.array([[aim.of(row)[1] for aim in aims] for row in given]).reshape(
+        len(given), len(aims)
+    )
     order = np.lexsort(costs.T[::-1])  # of these the first is never bettered by a later one
     front = []
     while len(order):
         first, order = order[0], order[1:]
         front.append(first)
-        worse = (costs[first] <= costs[order]).all(axis=1) & (costs[first] < costs[order]).any(axis=1)
+        worse = (costs[first] <= costs[order]).all(axis=1) & (costs[first] < costs[order]).any(
+            axis=1
+        )
         order = order[~worse]
     return (given[place] for place in sorted(front))
 
@@ -143,11 +158,14 @@ QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 
 def summary_heads(heads: Sequence[Head]) -> tuple[tuple[str, str], ...]:
     """Return names and units of the columns of a summary: quantiles, and the rank correlation with every input."""
-    inputs = [f"r({one.id})" for one in heads if one.input]
-    return tuple((name, "") for name in ("unit", "rows", "mean", *(f"q{100 * q:g}" for q in QUANTILES), *inputs))
+    inputs = [f"r({head.id})" for head in heads if head.input]
+    return tuple(
+        (name, "")
+        for name in ("unit", "rows", "mean", *(f"q{100 * q:g}" for q in QUANTILES), *inputs)
+    )
 
 
-def summary(rows: Iterable[Design], heads: Sequence[Head]) -> Iterator[Design]:
+def column_summaries(rows: Iterable[Design], heads: Sequence[Head]) -> Iterator[Design]:
     """Yield a row for every column of numbers, over the rows that have a value there."""
     numbers = [
         np.array([one if isinstance(one, (int, float)) else np.nan for one in column], dtype=float)
@@ -157,7 +175,12 @@ def summary(rows: Iterable[Design], heads: Sequence[Head]) -> Iterator[Design]:
     for values, head in zip(numbers, heads):
         there = values[np.isfinite(values)]
         if head.kind and len(there):
-            figures = (Unit(head.unit), len(there), float(there.mean()), *np.quantile(there, QUANTILES).tolist())
+            figures = (
+                Unit(head.unit),
+                len(there),
+                float(there.mean()),
+                *np.quantile(there, QUANTILES).tolist(),
+            )
             yield Design(head.id, (*figures, *(_rank_correlation(values, one) for one in inputs)))  # type: ignore[arg-type]
 
 

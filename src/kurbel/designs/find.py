@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Design, Head, Study
-from kurbel.designs.chosen import parts_of, place_of, read_condition
+from kurbel.designs.chosen import condition_parts, place_of, read_condition
 from kurbel.designs.plan import read_span
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.origin import Origin
@@ -90,7 +90,7 @@ class _Design(NamedTuple):
     unmet: str
 
 
-def find(
+def find_solutions(
     origin: Origin,
     vary: Sequence[str],
     equations: Sequence[str] = (),
@@ -108,10 +108,18 @@ def find(
     Raises UsageError for what cannot be read, and NoSolutionError, with what was met, where nothing is found.
     """
     extreme = least or greatest
-    if wrong := next((one for one in equations if not _EQUATION.fullmatch(one)), ""):
-        raise UsageError(f"{shown(wrong)}: write an equation, such as 'N_max = 4 kN'; a bound has --where")
-    if not 1 <= len(vary) <= 2 or (least and greatest) or len(equations) != (0 if extreme else len(vary)):
-        raise UsageError("give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest")
+    if wrong := next((equation for equation in equations if not _EQUATION.fullmatch(equation)), ""):
+        raise UsageError(
+            f"{text_in_one_line(wrong)}: write an equation, such as 'N_max = 4 kN'; a bound has --where"
+        )
+    if (
+        not 1 <= len(vary) <= 2
+        or (least and greatest)
+        or len(equations) != (0 if extreme else len(vary))
+    ):
+        raise UsageError(
+            "give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest"
+        )
     found = Solutions(origin, vary, [extreme] if extreme else equations, conditions, progress)
     if extreme:
         found.find_extreme("least" if least else "greatest")
@@ -144,19 +152,28 @@ class Solutions:
         if len({path_of(key) for key in keys}) < len(keys):
             raise UsageError(f"--vary {keys[-1]}: this key is varied twice")
         names = [one.partition("=")[0].strip() for one in wanted]
-        names += [name for name in (parts_of(one)[0] for one in conditions) if name not in keys]
+        names += [
+            name
+            for name in (condition_parts(condition)[0] for condition in conditions)
+            if name not in keys
+        ]
         ends = product(*((low, high) for _, low, high, _ in spans))
         self.study = Study(origin, keys, ends, names, option="find")
         self.machine, self.answers = self.study.binder.machine.name, self.study.answers
         self.varied = [_varied(span, kind) for span, kind in zip(spans, self.study.binder.kinds)]
-        heads = [*(Head(one.key, SI[one.kind], one.kind, input=True) for one in self.varied), *self.study.heads("si")]
+        heads = [
+            *(Head(one.key, SI[one.kind], one.kind, input=True) for one in self.varied),
+            *self.study.heads("si"),
+        ]
         self.heads = tuple(heads[len(keys) :])
         self.wanted: list[Target] = []
         for text, name in zip(wanted, names):
             place = place_of(name, heads, "find")
             value = None if text == name else float(read_condition(text, heads, "find").value)
             self.wanted.append(Target(text.strip(), heads[place], place - len(keys), "=", value))
-        self.conditions = [(one, read_condition(one, heads)) for one in conditions]
+        self.conditions = [
+            (condition, read_condition(condition, heads)) for condition in conditions
+        ]
         self.computed: list[_Design] = []
         self.found: list[Solution] = []
         self.jumps: list[Solution] = []
@@ -170,9 +187,13 @@ class Solutions:
         numbers = low * (1 - places) + high * places
         found = []
         for row, one in zip(numbers.tolist(), self.study.of(self.study.binder.columns(numbers))):
-            values = tuple(np.array(one.values or [np.nan] * len(self.study.answers), dtype=float).tolist())
+            values = tuple(
+                np.array(one.values or [np.nan] * len(self.study.answers), dtype=float).tolist()
+            )
             design = Design(0, (*row, *one.values))
-            unmet = one.failure or ", ".join(text for text, each in self.conditions if not each.holds(design))
+            unmet = one.failure or ", ".join(
+                text for text, each in self.conditions if not each.holds(design)
+            )
             broken = one.failure or ", ".join(f"limits.{name}" for name in one.broken)
             found.append(_Design(tuple(row), values, one.failure, broken, unmet))
         self.computed = sorted([*self.computed, *found])
@@ -196,7 +217,9 @@ class Solutions:
             self.excluded += bool(one.unmet)
             if not one.unmet:
                 notes = (f"breaks {one.broken}",) if one.broken else ()
-                (self.jumps if jump else self.found).append(Solution(one.numbers, one.values, notes))
+                (self.jumps if jump else self.found).append(
+                    Solution(one.numbers, one.values, notes)
+                )
         self.found.sort()
 
     def find_extreme(self, aim: str) -> None:
@@ -207,7 +230,9 @@ class Solutions:
 
         def cost(places: Array) -> Array:
             found = self.at(places)
-            return np.array([np.nan if one.broken or one.unmet else sign * one.values[column] for one in found])
+            return np.array(
+                [np.nan if one.broken or one.unmet else sign * one.values[column] for one in found]
+            )
 
         place, best = lowest(cost, len(self.varied))
         if np.isfinite(best):
@@ -221,7 +246,9 @@ class Solutions:
         aside = self.at(np.clip(place + steps, 0.0, 1.0))
         for own, one in zip(place.tolist(), self.varied):
             if min(own, 1 - own) < _ASIDE:
-                notes.append(f"{one.key} is at the {'least' if own < 0.5 else 'greatest'} of its range")
+                notes.append(
+                    f"{one.key} is at the {'least' if own < 0.5 else 'greatest'} of its range"
+                )
         beyond = dict.fromkeys([*(one.broken for one in aside), *(one.unmet for one in aside)])
         notes += [f"beyond it: {text}" for text in beyond if text]
         if len(place) == 1:
@@ -231,7 +258,9 @@ class Solutions:
             ):
                 level = [one.numbers[0] for one in part]
                 if same and level[-1] - level[0] > _FLAT * (key.high - key.low):
-                    notes.append(f"as good from {key.in_unit(level[0]):.6g} to {key.written(level[-1])}")
+                    notes.append(
+                        f"as good from {key.in_unit(level[0]):.6g} to {key.written(level[-1])}"
+                    )
         return tuple(notes)
 
     @property
@@ -248,20 +277,26 @@ class Solutions:
     def met(self) -> list[tuple[float, float]]:
         """Least and greatest value of each wanted key value."""
         columns = [self.values[:, one.place] for one in self.wanted]
-        return [(np.nanmin(one, initial=np.inf), np.nanmax(one, initial=-np.inf)) for one in columns]
+        return [
+            (np.nanmin(column, initial=np.inf), np.nanmax(column, initial=-np.inf))
+            for column in columns
+        ]
 
     @property
     def failed(self) -> list[Failed]:
         """The parts of the range of the only key in which designs fail."""
         along = self.computed if len(self.varied) == 1 else []
-        parts = [list(part) for fails, part in groupby(along, key=lambda one: bool(one.failure)) if fails]
+        parts = [
+            list(part) for fails, part in groupby(along, key=lambda one: bool(one.failure)) if fails
+        ]
         return [Failed(part[0].numbers[0], part[-1].numbers[0], part[0].failure) for part in parts]
 
 
 def _nothing(found: Solutions) -> str:
     """Return the message that nothing was found, with the values that were met."""
     ranges = " and ".join(
-        f"{one.key} from {one.in_unit(one.low):.6g} to {one.written(one.high)}" for one in found.varied
+        f"{one.key} from {one.in_unit(one.low):.6g} to {one.written(one.high)}"
+        for one in found.varied
     )
     wanted = " and ".join(one.text for one in found.wanted)
     if not np.isfinite(found.met).all():
@@ -284,5 +319,9 @@ def _varied(span: tuple[str, str, str, str], kind: str) -> Varied:
         raise UsageError(f"--vary {key}: only a number has a range; kurbel sweep compares words")
     ends = [parse_quantity(text, kind) for text in (low, high)]
     if not ends[0] < ends[1]:
-        raise UsageError(f"--vary {key}: the range goes from {low} up to {high}; write the smaller one first")
-    return Varied(key, ends[0], ends[1], "" if unit == "%" else unit, kind)  # a share is printed as a sweep prints it
+        raise UsageError(
+            f"--vary {key}: the range goes from {low} up to {high}; write the smaller one first"
+        )
+    return Varied(
+        key, ends[0], ends[1], "" if unit == "%" else unit, kind
+    )  # a share is printed as a sweep prints it

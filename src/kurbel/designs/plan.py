@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.declared.numerals import NUMBER, plain
-from kurbel.declared.reading import LONGEST_VALUE, shown
+from kurbel.declared.numerals import NUMBER, keyboard_text
+from kurbel.declared.reading import LONGEST_VALUE, text_in_one_line
 from kurbel.declared.units import written_unit
 from kurbel.errors import UsageError
 from kurbel.machine_file.overrides import path_of
@@ -77,7 +77,9 @@ def read_axis(text: str) -> tuple[Input, ...]:
         raise _refused(text, "a key is missing next to ';'; write KEY=…; KEY=…, or leave it out")
     together = tuple(map(read_input, parts))
     if len(together) > 1 and any(one.distribution for one in together):
-        raise _refused(text, "a distribution has a --vary of its own; write a list or a range of each key")
+        raise _refused(
+            text, "a distribution has a --vary of its own; write a list or a range of each key"
+        )
     return together
 
 
@@ -89,9 +91,12 @@ def read_input(text: str) -> Input:
     >>> read_input("rod_ratio=3:4:0.25").numbers
     (3.0, 3.25, 3.5, 3.75, 4.0)
     """
-    key, _, values = (part.strip() for part in plain(text).partition("="))
+    key, _, values = (part.strip() for part in keyboard_text(text).partition("="))
     if not key or not values:
-        raise _refused(text, "write KEY=…, such as rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm)")
+        raise _refused(
+            text,
+            "write KEY=…, such as rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm)",
+        )
     if call := _CALL.fullmatch(values):
         distribution, unit = _distribution(text, call[1], call[2])
         return Input(key, unit=unit, distribution=distribution)
@@ -107,21 +112,26 @@ def read_span(text: str) -> tuple[str, str, str, str]:
     >>> read_span("crank=300:500 mm")
     ('crank', '300 mm', '500 mm', 'mm')
     """
-    key, _, values = (part.strip() for part in plain(text).partition("="))
+    key, _, values = (part.strip() for part in keyboard_text(text).partition("="))
     (low, high), unit = _numbers(
-        text, values.split(":") if key else (), 2, "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm"
+        text,
+        values.split(":") if key else (),
+        2,
+        "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm",
     )
     return key, f"{low} {unit}".rstrip(), f"{high} {unit}".rstrip(), unit
 
 
 def _refused(text: str, why: str) -> UsageError:
-    return UsageError(f"--vary {shown(text)}: {why}")
+    return UsageError(f"--vary {text_in_one_line(text)}: {why}")
 
 
 def _list(text: str, parts: list[str]) -> tuple[str, ...]:
     """Return the values of a list; the unit of the last one is that of those before it that have none."""
     if not all(parts) or any(len(part) > LONGEST_VALUE for part in parts):
-        raise _refused(text, "a value is missing between two commas; write decimal points, such as 1.5")
+        raise _refused(
+            text, "a value is missing between two commas; write decimal points, such as 1.5"
+        )
     if any(";" in part and NUMBER.match(part) for part in parts):
         raise _refused(text, "values are separated by commas; after ';' comes a further KEY=…")
     unit = written_unit(parts[-1])
@@ -138,7 +148,7 @@ def _numbers(text: str, parts: Sequence[str], count: int, expected: str) -> tupl
     if len(units) > 1:
         raise _refused(text, f"write these numbers in one unit, not in {' and '.join(units)}")
     if large := next((number for number in numbers if abs(float(number)) > _LARGEST), ""):
-        raise _refused(text, f"{shown(large)} is too large to compute with")
+        raise _refused(text, f"{text_in_one_line(large)} is too large to compute with")
     return numbers, "".join(units)
 
 
@@ -148,7 +158,9 @@ def _range(text: str, values: str) -> tuple[tuple[float, ...], str]:
     numbers, unit = _numbers(text, values.split(":"), 3, expected)
     first, last, step = (Fraction(repr(float(number))) for number in numbers)
     if not step or (last - first) / step < 0:
-        raise _refused(text, f"a range from {numbers[0]} by steps of {numbers[2]} never reaches {numbers[1]}")
+        raise _refused(
+            text, f"a range from {numbers[0]} by steps of {numbers[2]} never reaches {numbers[1]}"
+        )
     if (last - first) / step >= _MOST_VALUES:
         raise _refused(text, f"this range has more than {_MOST_VALUES} values, as no key may")
     whole = math.lcm(first.denominator, step.denominator)
@@ -159,14 +171,16 @@ def _range(text: str, values: str) -> tuple[tuple[float, ...], str]:
 def _distribution(text: str, name: str, inside: str) -> tuple[NormalDist | Uniform, str]:
     if name not in _DISTRIBUTIONS:
         known = ", ".join(f"{one}({words})" for one, words in _DISTRIBUTIONS.items())
-        raise _refused(text, f"no distribution '{shown(name)}'; known are {known}")
+        raise _refused(text, f"no distribution '{text_in_one_line(name)}'; known are {known}")
     expected = f"{name}({_DISTRIBUTIONS[name]}) has two numbers, such as normal(450 mm, 0.2 mm)"
     numbers, unit = _numbers(text, inside.split(","), 2, expected)
     first, second = map(float, numbers)
     if name == "normal" and second <= 0:
         raise _refused(text, f"the standard deviation must be more than 0, got {numbers[1]}")
     if name == "uniform" and second <= first:
-        raise _refused(text, f"the least value must be less than the most, got {numbers[0]} and {numbers[1]}")
+        raise _refused(
+            text, f"the least value must be less than the most, got {numbers[0]} and {numbers[1]}"
+        )
     return NormalDist(first, second) if name == "normal" else Uniform(first, second), unit
 
 
@@ -211,9 +225,13 @@ class Plan:
                     f"--vary {one.key}: limits are the same for all rows; --where chooses those within others"
                 )
         if drawn and not sample:
-            raise UsageError(f"--vary {drawn[0].key}: a distribution needs --sample N, such as --sample 1000")
+            raise UsageError(
+                f"--vary {drawn[0].key}: a distribution needs --sample N, such as --sample 1000"
+            )
         if sample and not drawn:
-            raise UsageError("--sample: no key has a distribution, such as bore=normal(450 mm, 0.2 mm)")
+            raise UsageError(
+                "--sample: no key has a distribution, such as bore=normal(450 mm, 0.2 mm)"
+            )
         for axis in self._axes:
             if len({one.length for one in axis}) > 1:
                 each = ", ".join(f"{one.key} has {one.length}" for one in axis)
@@ -230,7 +248,9 @@ class Plan:
 
     def texts(self, row: int) -> tuple[str, ...]:
         """Return the values of the inputs in a row as the machine file would have them."""
-        return tuple(one.text(int(place[0])) for one, place in zip(self.inputs, self.places(np.array([row]))))
+        return tuple(
+            one.text(int(place[0])) for one, place in zip(self.inputs, self.places(np.array([row])))
+        )
 
 
 def _drawn(one: Input, shares: Sequence[float]) -> Input:
@@ -257,5 +277,5 @@ def shard(text: str, rows: int) -> range:
     found = re.fullmatch("([0-9]{1,9})/([0-9]{1,9})", text)
     number, count = map(int, found.groups()) if found else (0, 0)
     if not 1 <= number <= count:
-        raise UsageError(f"--shard {shown(text)}: write K/N, such as 2/8, K from 1 to N")
+        raise UsageError(f"--shard {text_in_one_line(text)}: write K/N, such as 2/8, K from 1 to N")
     return range(rows * (number - 1) // count, rows * number // count)

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.declared.unit_systems import convert, shown_unit
-from kurbel.designs.answers import Cell, Design, Found, Head, Study, Value, is_slow
+from kurbel.designs.answers import Cell, Design, DesignResult, DesignValue, Head, Study, is_slow
 from kurbel.designs.binding import KeyColumn, numbers_of
 from kurbel.designs.plan import Input, Plan
 from kurbel.errors import KurbelError, UsageError
@@ -70,7 +70,9 @@ class Sweep:
             starts = (int(self.rows * (number * _GOLDEN % 1)) for number in range(_STARTS))
         self._keys = [one.key for one in self.plan.inputs]
         texts = chain([spec.start] if spec.start else [], map(self.plan.texts, starts))
-        self._study = Study(spec.origin, self._keys, texts, spec.columns, spec.with_angles, cases=spec.cases)
+        self._study = Study(
+            spec.origin, self._keys, texts, spec.columns, spec.with_angles, cases=spec.cases
+        )
         self._numbers = list(map(numbers_of, self.plan.inputs, self._study.binder.kinds))
         self.texts = ("keeps", "broken", "failure") if self._study.limits else ("failure",)
         """Columns after the values: whether all limits are kept, `yes`, `no` or `` where one cannot be judged, the
@@ -82,7 +84,11 @@ class Sweep:
         heads = []
         for column, kind in zip(self._columns(range(1)), self._study.binder.kinds):
             first = float(column.numbers[column.places[0]])
-            unit = shown_unit(kind, self.spec.system, first if math.isfinite(first) else 0.0) if kind else ""
+            unit = (
+                shown_unit(kind, self.spec.system, first if math.isfinite(first) else 0.0)
+                if kind
+                else ""
+            )
             heads.append(Head(column.input.key, unit, kind, input=True))
         return (*heads, *self._study.heads(self.spec.system))
 
@@ -95,7 +101,10 @@ class Sweep:
         heads = [(head.id, place) for place, head in enumerate(self.heads)]
         if self.spec.cases or any(re.match(r"cylinders\W*\d", key) for key in self._keys):
             return heads
-        alike = {one.drive.name: one.twin or one for one in Case(self._study.binder.machine).cylinders}
+        alike = {
+            cylinder.drive.name: cylinder.twin or cylinder
+            for cylinder in Case(self._study.binder.machine).cylinders
+        }
         count, answers = len(self._keys), self._study.answers
 
         def content(place: int) -> Hashable:
@@ -139,10 +148,14 @@ class Sweep:
         lacking = [None] * len(self._study.answers)
         heads = self.heads[len(self._keys) :]
         columns = (
-            _in_unit(column, head) for column, head in zip(zip(*(one.values or lacking for one in found)), heads)
+            _in_unit(column, head)
+            for column, head in zip(zip(*(one.values or lacking for one in found)), heads)
         )
         each = zip(rows, self.inputs(rows), zip(*columns), found)
-        return [Design(row + 1, (*inputs, *values), self._texts(one)) for row, inputs, values, one in each]
+        return [
+            Design(row + 1, (*inputs, *values), self._texts(one))
+            for row, inputs, values, one in each
+        ]
 
     def inputs(self, rows: Sequence[int]) -> Iterable[tuple[Cell, ...]]:
         """Return the values of the inputs in these rows, counted from 0."""
@@ -155,19 +168,24 @@ class Sweep:
 
     def _columns(self, rows: Sequence[int]) -> list[KeyColumn]:
         """Return the values of the keys in these rows, counted from 0."""
-        return list(map(KeyColumn, self.plan.inputs, self._numbers, self.plan.places(np.array(rows))))
+        return list(
+            map(KeyColumn, self.plan.inputs, self._numbers, self.plan.places(np.array(rows)))
+        )
 
-    def _texts(self, found: Found) -> tuple[str, ...]:
+    def _texts(self, found: DesignResult) -> tuple[str, ...]:
         failure = found.failure or "; ".join(found.unjudged)
         keeps = "no" if found.broken else "" if failure else "yes"
         return (keeps, next(iter(found.broken), ""), failure)[-len(self.texts) :]
 
 
-def _in_unit(column: Sequence[Value], head: Head) -> list[Value]:
+def _in_unit(column: Sequence[DesignValue], head: Head) -> list[DesignValue]:
     """Return values in the unit of their head; lists as tuples, None for a missing value."""
     if head.listed:
         lists = (one if isinstance(one, tuple) else None for one in column)
-        return [one and tuple(convert(part, head.kind, head.unit) + 0.0 for part in one) for one in lists]
+        return [
+            one and tuple(convert(part, head.kind, head.unit) + 0.0 for part in one)
+            for one in lists
+        ]
     numbers = convert(np.array(column, dtype=float), head.kind, head.unit) + 0.0
     return [None if one != one else one for one in numbers.tolist()]
 
@@ -184,8 +202,12 @@ _ANSWERS_WITHIN = 10.0
 """Seconds in which a cluster must answer."""
 
 
-def rows_of(
-    sweep: Sweep, rows: range, jobs: int = 1, dask: str | None = None, note: Callable[[str], None] = lambda _: None
+def computed_rows(
+    sweep: Sweep,
+    rows: range,
+    jobs: int = 1,
+    dask: str | None = None,
+    note: Callable[[str], None] = lambda _: None,
 ) -> Generator[Design, None, None]:
     """Yield rows in their order as soon as they are computed.
 
@@ -195,7 +217,9 @@ def rows_of(
     if dask is not None:
         blocks = _of_cluster(sweep, rows, dask, note)
     else:
-        blocks = _of_processes(sweep, rows, jobs) if jobs > 1 else map(sweep.block, sweep.blocks(rows))
+        blocks = (
+            _of_processes(sweep, rows, jobs) if jobs > 1 else map(sweep.block, sweep.blocks(rows))
+        )
     for block in blocks:
         yield from (row for row in block if row.number - 1 in rows)
 
@@ -203,7 +227,9 @@ def rows_of(
 def likely_jobs(rows: int) -> int:
     """Return the number of processes on this computer that is worthwhile for so many rows."""
     # a scheduler may have left this process fewer cores than the machine has
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    cores = (
+        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    )
     return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)
 
 
@@ -213,7 +239,9 @@ def _of_processes(sweep: Sweep, rows: range, jobs: int) -> Iterator[list[Design]
     code = f"import sys; sys.path[:] = {list(filter(None, sys.path))}; from kurbel.designs.sweep import work; work()"
     command, pipe = [sys.executable, "-I", "-c", code], subprocess.PIPE
     processes = [
-        subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, start_new_session=True)
+        subprocess.Popen(
+            command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, start_new_session=True
+        )
         for _ in range(jobs)
     ]
     try:
@@ -226,7 +254,9 @@ def _of_processes(sweep: Sweep, rows: range, jobs: int) -> Iterator[list[Design]
             yield pickle.load(process.stdout)
     except (OSError, EOFError, pickle.UnpicklingError):  # its ends of the pipes are closed
         why = "--jobs 1 needs the least memory, and shows what is wrong"
-        raise KurbelError(f"a worker process ended early, with status {process.wait()}; {why}") from None
+        raise KurbelError(
+            f"a worker process ended early, with status {process.wait()}; {why}"
+        ) from None
     finally:
         for process in processes:
             process.kill()
@@ -252,7 +282,9 @@ def _computed(spec: Spec, rows: range) -> list[Design]:
     return _known(spec).block(rows)
 
 
-def _of_cluster(sweep: Sweep, rows: range, address: str, note: Callable[[str], None]) -> Iterator[list[Design]]:
+def _of_cluster(
+    sweep: Sweep, rows: range, address: str, note: Callable[[str], None]
+) -> Iterator[list[Design]]:
     """Yield blocks in order from the workers of a cluster, with few of them ahead."""
     blocks, waiting = sweep.blocks(rows), deque[Any]()
     with _client(address) as client:
@@ -283,9 +315,15 @@ def _client(address: str) -> Iterator[Any]:
 
     logging.disable()  # of a lost scheduler it writes tracebacks
     try:
-        asyncio.run(reached())  # a client that reaches nothing waits 20 s at its end, and writes a traceback
+        asyncio.run(
+            reached()
+        )  # a client that reaches nothing waits 20 s at its end, and writes a traceback
         client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:  # no address, no answer in time, or a protocol that is not set up
+    except (
+        OSError,
+        ValueError,
+        TypeError,
+    ) as error:  # no address, no answer in time, or a protocol that is not set up
         first_line = str(error).partition("\n")[0]
         raise UsageError(f"--dask {address}: no scheduler responds there ({first_line})") from None
     try:

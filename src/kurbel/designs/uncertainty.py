@@ -13,7 +13,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.numerals import parse_ratio
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import convert, units_of
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Answer, answered, is_slow
@@ -38,7 +38,7 @@ _BEND = 0.1
 _ROUNDING = 1e-9
 """Second-order parts below this share of the value are not counted."""
 
-Spreads = Sequence[tuple[str, str]]
+KeyUncertainties = Sequence[tuple[str, str]]
 """Dotted keys, each with its standard uncertainty as a text."""
 Counted = Callable[[Sequence[Array]], Iterable[Array]]
 """Yields what it is given, and may report the progress."""
@@ -76,7 +76,7 @@ class Inputs(NamedTuple):
     spreads: Array
 
 
-def given_uncertainty(machine: Machine, more: Spreads = ()) -> Inputs | None:
+def given_uncertainty(machine: Machine, more: KeyUncertainties = ()) -> Inputs | None:
     """Return the inputs that are uncertain by `0.2 mm` or `2 %`, in a machine's file or outside it; None without any.
 
     Raises MachineFileError or UsageError with all faults.
@@ -99,27 +99,45 @@ def given_uncertainty(machine: Machine, more: Spreads = ()) -> Inputs | None:
         spread = dict(spreads)[key]
         try:
             value = parse_quantity(text, kind)
-            size = abs(value) * parse_ratio(spread) if spread.endswith("%") else parse_quantity(spread, kind)
+            size = (
+                abs(value) * parse_ratio(spread)
+                if spread.endswith("%")
+                else parse_quantity(spread, kind)
+            )
             found.append((value, size))
             if not size > 0:
                 wrong[key] = f"it must be more than 0, got {spread}"
         except (UnitError, KeyError) as error:
-            wrong[key] = str(error) if kind else f"{shown(text)!r} is not a number that could be uncertain"
-    if faults := [f"--uncertainty {shown(key)}: {wrong[key]}" for key in dict(more) if key in wrong]:
+            wrong[key] = (
+                str(error)
+                if kind
+                else f"{text_in_one_line(text)!r} is not a number that could be uncertain"
+            )
+    if faults := [
+        f"--uncertainty {text_in_one_line(key)}: {wrong[key]}" for key in dict(more) if key in wrong
+    ]:
         raise UsageError("; ".join(faults))
     if wrong:
-        raise origin.error(*located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
+        raise origin.error(
+            *located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong])
+        )
     return Inputs(binder, tuple(texts), *np.array(found).T)
 
 
-def uncertainties(inputs: Inputs, requested: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
+def uncertainties(
+    inputs: Inputs, requested: Sequence[Answer], counted: Counted = iter
+) -> list[Uncertain]:
     """Return the uncertainties of the key values that are numbers; counted: iterates over the parts of a sample."""
     units = np.eye(len(inputs.keys))
     steps = (_STEP, -_STEP, _STEP / 2, -_STEP / 2, 1.0, -1.0)
-    found, _ = _answers(inputs, np.concatenate([0 * units[:1], *(step * units for step in steps)]), requested)
+    found, _ = _answers(
+        inputs, np.concatenate([0 * units[:1], *(step * units for step in steps)]), requested
+    )
     there = np.isfinite(found[0])
     values = found[0, there]
-    above, below, near_above, near_below, over, under = found[1:, there].reshape(len(steps), len(units), -1)
+    above, below, near_above, near_below, over, under = found[1:, there].reshape(
+        len(steps), len(units), -1
+    )
     coarse, fine = (above - below) / (2 * _STEP), (near_above - near_below) / _STEP
     slopes = (4 * fine - coarse) / 3
     sizes = np.sqrt((slopes**2).sum(axis=0))
@@ -127,7 +145,9 @@ def uncertainties(inputs: Inputs, requested: Sequence[Answer], counted: Counted 
     bend = np.maximum(np.abs((over + under) / 2 - values), np.abs(fine - coarse))
     straight = (bend <= np.maximum(_BEND * sizes, _ROUNDING * np.abs(values))).all(axis=0)
     numeric = [one for one, is_there in zip(requested, there) if is_there]
-    linear = list(map(Uncertain, numeric, values.tolist(), sizes.tolist(), map(tuple, shares.T.tolist())))
+    linear = list(
+        map(Uncertain, numeric, values.tolist(), sizes.tolist(), map(tuple, shares.T.tolist()))
+    )
     sampled = _sampled(inputs, [one for one, holds in zip(linear, straight) if not holds], counted)
     return [one if holds else next(sampled) for one, holds in zip(linear, straight)]
 
@@ -140,13 +160,19 @@ def _sampled(inputs: Inputs, bent: Sequence[Uncertain], counted: Counted) -> Ite
     parts = [_answers(inputs, part, requested) for part in counted(np.array_split(shifts, _PARTS))]
     found = np.concatenate([values for values, _ in parts])
     failures = [why for _, each in parts for why in each]
-    failed = f"{len(failures)} of {count} sampled machines fail and are ignored ({failures[0]})." if failures else ""
+    failed = (
+        f"{len(failures)} of {count} sampled machines fail and are ignored ({failures[0]})."
+        if failures
+        else ""
+    )
     for one, values in zip(bent, found.T):
         there = np.isfinite(values)
         spread = float(values[there].std(ddof=1)) if there.sum() > 1 else math.nan
         shares = (0.0,) * len(inputs.keys)
         if spread > 0:
-            shares = tuple(float(np.corrcoef(own, values[there])[0, 1]) ** 2 for own in shifts[there].T)
+            shares = tuple(
+                float(np.corrcoef(own, values[there])[0, 1]) ** 2 for own in shifts[there].T
+            )
         yield Uncertain(one.answer, one.value, spread, shares, int(there.sum()), failed)
 
 
@@ -164,7 +190,12 @@ def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tupl
 
 
 def with_uncertainty(
-    report: Report, case: Case, more: Spreads, system: str, counted: Counted = iter, named: bool = False
+    report: Report,
+    case: Case,
+    more: KeyUncertainties,
+    system: str,
+    counted: Counted = iter,
+    named: bool = False,
 ) -> Report:
     """Return a report with a table of the uncertainties of its key values; more: those given outside the file.
 
@@ -176,8 +207,12 @@ def with_uncertainty(
         return report
     requested = list(_numeric_answers(case, report.command))
     if named:
-        printed = {(part.name, key_value.id) for part in report.all_parts for key_value in part.key_values}
-        requested = [answer for answer in requested if (answer.subject, answer.quantity.id) in printed]
+        printed = {
+            (part.name, key_value.id) for part in report.all_parts for key_value in part.key_values
+        }
+        requested = [
+            answer for answer in requested if (answer.subject, answer.quantity.id) in printed
+        ]
     found = uncertainties(inputs, requested, counted)
     notes = ["Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."]
     if any(one.sample for one in found):
@@ -204,20 +239,29 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
     own = [one for one in found if one.answer.subject == part.name and one.counts]
     if not own:
         return part
-    units = units_of([(one.answer.kind, one.answer.quantity.family, abs(one.value)) for one in own], system)
+    units = units_of(
+        [(one.answer.kind, one.answer.quantity.family, abs(one.value)) for one in own], system
+    )
     values = (convert(one.value, one.answer.kind, unit) for one, unit in zip(own, units))
     spreads = (convert(one.spread, one.answer.kind, unit) for one, unit in zip(own, units))
-    shares = ([round(100 * share, 1) for share in each] for each in zip(*(one.shares for one in own)))
+    shares = (
+        [round(100 * share, 1) for share in each] for each in zip(*(one.shares for one in own))
+    )
     table = PlaceTable(
         "uncertainty",
         "Standard uncertainty, and the share of each input in its square",
         ("key_value", "symbol", "unit"),
-        tuple((one.answer.quantity.id, one.answer.quantity.symbol, unit or "1") for one, unit in zip(own, units)),
+        tuple(
+            (one.answer.quantity.id, one.answer.quantity.symbol, unit or "1")
+            for one, unit in zip(own, units)
+        ),
         (
             Column("value", "value", "value", "", tuple(values), alone=6),
             Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2),
             *(Column(key, key, key, "%", tuple(each), alone=2) for key, each in zip(keys, shares)),
-            Column("sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=2),
+            Column(
+                "sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=2
+            ),
         ),
         headed=True,
     )

@@ -27,23 +27,29 @@ from kurbel.declared.forms.figures import (
 )
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
-from kurbel.declared.reading import REFUSED, shown
-from kurbel.declared.record import Record, Rule, Values, alternative, field
+from kurbel.declared.reading import REFUSED, text_in_one_line
+from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.errors import Fault, RuleError, UsageError, refuse
-from kurbel.machine.crankshaft import BalanceShaft, Counterweight, Crankshaft, Locomotive, SharedCounterweights
+from kurbel.machine.crankshaft import (
+    BalanceShaft,
+    Counterweight,
+    Crankshaft,
+    Locomotive,
+    SharedCounterweights,
+)
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
 from kurbel.machine.ideal_cards import Diesel, Otto
 from kurbel.machine.indicator import Chamber, Rectangle
 from kurbel.machine.origin import Origin
 from kurbel.machine.pumped import Gas, Pump
-from kurbel.machine.several import EqualCylinders, in_order, within_cycle
+from kurbel.machine.several import EqualCylinders, in_order, rounded_within_cycle
 from kurbel.machine.shaft_line import SHAFT, ShaftLine, ShaftPart, line_of, shaft_faults
 from kurbel.machine.turning import (
     MOST_TURNS,
     Coupling,
     Effort,
     Flywheel,
-    Known,
+    KnownDiagram,
     KnownEffort,
     Load,
     Swing,
@@ -96,7 +102,9 @@ class Machine(Record):
         least=0,
         absent="no velocities, accelerations or inertia in physical units",
     )
-    cycle: str = field(tuple(CYCLES), "Working cycle: 360° or 720°", default="two-stroke", absent="two-stroke")
+    cycle: str = field(
+        tuple(CYCLES), "Working cycle: 360° or 720°", default="two-stroke", absent="two-stroke"
+    )
     efficiency: float = field(
         "ratio",
         "Mechanical efficiency: multiplies the torque of driving cylinders, or only the gas force of the driving "
@@ -131,7 +139,10 @@ class Machine(Record):
     )
     _cylinder = alternative(Inline(Cylinder, unless="cylinders"), "The keys of the only cylinder")
     _cylinders = alternative(
-        OneOf(Listing(RecordForm(Cylinder, inline_too=True), called="cylinder"), RecordForm(EqualCylinders)),
+        OneOf(
+            Listing(RecordForm(Cylinder, inline_too=True), called="cylinder"),
+            RecordForm(EqualCylinders),
+        ),
         "Several cylinders as a list, or equal ones as one mapping; their keys are then not allowed at the top level",
         absent="one cylinder, flat",
         gives=lambda given: {"cylinders": given["cylinders"]},
@@ -148,14 +159,18 @@ class Machine(Record):
         absent="constant",
         gives=lambda given: {"load": None if given["load"] == "constant" else given["load"]},
     )
-    effort: Known | None = field(
+    effort: KnownDiagram | None = field(
         RecordForm(KnownEffort),
         "A given turning-moment diagram, instead of cylinders",
         absent="from the cylinders",
     )
-    coupling: Coupling | None = field(Coupling, "Elastic coupling to a driven moment of inertia", absent="rigid")
+    coupling: Coupling | None = field(
+        Coupling, "Elastic coupling to a driven moment of inertia", absent="rigid"
+    )
     crankshaft: Crankshaft | None = field(
-        Crankshaft, "The throw between bearings A and B, the same for all cylinders", absent="no strength check"
+        Crankshaft,
+        "The throw between bearings A and B, the same for all cylinders",
+        absent="no strength check",
     )
     counterweights: SharedCounterweights | tuple[Counterweight, ...] = counterweights()
     balance_shafts: tuple[BalanceShaft, ...] = field(
@@ -205,7 +220,9 @@ class Machine(Record):
     )
     gas: Gas | None = field(Gas, "The gas that a compressor draws in", absent="volumes only")
     pump: Pump | None = field(
-        Pump, "Slip, liquid, pipes and vessels of a pump; its driven pistons are then those of pumps", absent="no pipes"
+        Pump,
+        "Slip, liquid, pipes and vessels of a pump; its driven pistons are then those of pumps",
+        absent="no pipes",
     )
     origin: Origin | None = None
     cases: tuple[LoadCase, ...] = field(
@@ -248,11 +265,18 @@ class Machine(Record):
         return machine
 
     @classmethod
-    def faults_of_some(cls, given: Values) -> list[Fault]:
+    def faults_of_some(cls, given: ValuesByKey) -> list[Fault]:
         """Return what is wrong with the keys; also with the shaft line if other keys could not be read."""
-        shaft, cylinders = given.get("shaft"), given.get("cylinders", (given.get("cylinder", REFUSED),))
+        shaft, cylinders = (
+            given.get("shaft"),
+            given.get("cylinders", (given.get("cylinder", REFUSED),)),
+        )
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
-        known = shaft_faults(shaft, _names(cylinders)) if isinstance(shaft, tuple) and not unknown else []
+        known = (
+            shaft_faults(shaft, _names(cylinders))
+            if isinstance(shaft, tuple) and not unknown
+            else []
+        )
         return super().faults_of_some(given) + known
 
     def rules(self) -> Iterator[Rule]:
@@ -268,22 +292,44 @@ class Machine(Record):
                 inside = ("tandem", number - 1) if number else ()
                 rules = piston.indicator_rules(self.cycle_of_piston(cylinder, number), self.ambient)
                 yield from (rule.below("cylinders", index, *inside) for rule in rules)
-            of_yoke = cylinder.mechanism.pin_diameter if isinstance(cylinder.mechanism, ScotchYoke) else None
-            rubbing = cylinder.friction.rules_beside(self.crankshaft, of_yoke) if cylinder.friction else ()
+            of_yoke = (
+                cylinder.mechanism.pin_diameter
+                if isinstance(cylinder.mechanism, ScotchYoke)
+                else None
+            )
+            rubbing = (
+                cylinder.friction.rules_beside(self.crankshaft, of_yoke)
+                if cylinder.friction
+                else ()
+            )
             yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
         yield from crowded(self.cylinders)
-        for key, diagram in (("effort", self.effort), ("load", self.load.diagram if self.load else None)):
-            yield from (rule.below(key) for rule in rules_of_cycle(diagram, self._common_cycle, self.revolutions))
+        for key, diagram in (
+            ("effort", self.effort),
+            ("load", self.load.diagram if self.load else None),
+        ):
+            yield from (
+                rule.below(key)
+                for rule in rules_of_cycle(diagram, self._common_cycle, self.revolutions)
+            )
         if isinstance(self.effort, Swing):
-            message = "needs the effort over the angle; of this one the swing of energy alone is given"
+            message = (
+                "needs the effort over the angle; of this one the swing of energy alone is given"
+            )
             yield Rule("load", self.load is not None and self.load.varies, message)
             yield Rule("coupling", self.coupling is not None, message)
         if self.shaft is not None:
             message = "'coupling' is a shaft line of two masses, and 'shaft' another one; leave one of them out"
             yield Rule("coupling", self.coupling is not None, message)
             inertia = self.flywheel.inertia if self.flywheel else None
-            without = any(mass.flywheel for mass in self.shaft.masses) and not (inertia is not None and np.all(inertia))
-            yield Rule("shaft", without, "the shaft line has a 'flywheel'; give the machine one with its 'inertia'")
+            without = any(mass.flywheel for mass in self.shaft.masses) and not (
+                inertia is not None and np.all(inertia)
+            )
+            yield Rule(
+                "shaft",
+                without,
+                "the shaft line has a 'flywheel'; give the machine one with its 'inertia'",
+            )
 
     def _name_rules(self) -> Iterator[Rule]:
         """Yield the rules of the names of cylinders, and of those in limits and expectations."""
@@ -291,21 +337,27 @@ class Machine(Record):
         for index, name in enumerate(names):
             place = ("cylinders", index, "name")
             yield Rule(place, name in names[:index], f"two cylinders are called '{name}'")
-            whole = f"'{MACHINE}' means the whole machine in 'limits' and 'expect'; give another name"
+            whole = (
+                f"'{MACHINE}' means the whole machine in 'limits' and 'expect'; give another name"
+            )
             yield Rule(place, name == MACHINE, whole)
         cases = [case.name for case in self.cases]
         for index, name in enumerate(cases):
-            yield Rule(("cases", index, "name"), name in cases[:index], f"two cases are called '{name}'")
+            yield Rule(
+                ("cases", index, "name"), name in cases[:index], f"two cases are called '{name}'"
+            )
         pistons = (name for cylinder in self.cylinders for name in self.piston_names(cylinder))
         several = self.crankshaft is not None and len(self.cylinders) > 1
-        throws = [f"throw {number}" for number in range(1, len(self.cylinders) + 1)] if several else []
+        throws = (
+            [f"throw {number}" for number in range(1, len(self.cylinders) + 1)] if several else []
+        )
         scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons, *throws)))
         for key, figures in (("limits", self.limits), ("expect", self.expect)):
             for id, figure in figures:
                 if (scope := scoped(id)[0]) and scope not in scopes:
                     hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
                     written = (figure.name if isinstance(figure, (Bound, Expected)) else "") or id
-                    message = f"no cylinder is called '{shown(scope)}'{hint}"
+                    message = f"no cylinder is called '{text_in_one_line(scope)}'{hint}"
                     yield Rule((key, written), True, message, at_key=True)
 
     def cycle_of(self, cylinder: Cylinder) -> str:
@@ -323,7 +375,10 @@ class Machine(Record):
         With several cylinders the name of the cylinder comes first, `cylinder 1.pump`; equal names are numbered.
         """
         names = [piston.name for piston in cylinder.pistons if piston.indicator]
-        own = [f"{one} {names[: n + 1].count(one)}" if one in names[:n] else one for n, one in enumerate(names)]
+        own = [
+            f"{one} {names[: n + 1].count(one)}" if one in names[:n] else one
+            for n, one in enumerate(names)
+        ]
         scope = f"{cylinder.name}." if len(self.cylinders) > 1 else ""
         return tuple(f"{scope}{one}" for one in own) if len(own) > 1 else ()
 
@@ -340,18 +395,27 @@ class Machine(Record):
     @property
     def chambers(self) -> list[Chamber]:
         """What the indicators of all pistons show."""
-        return [chamber for one in self.cylinders for piston in one.pistons for chamber in piston.chambers.values()]
+        return [
+            chamber
+            for cylinder in self.cylinders
+            for piston in cylinder.pistons
+            for chamber in piston.chambers.values()
+        ]
 
     @property
     def trace_files(self) -> tuple[str, ...]:
         """The files that the traces of the machine, or its effort, were read from."""
-        files = (one.files for one in (*self.chambers, self.effort) if isinstance(one, (Trace, Effort)))
+        files = (
+            one.files for one in (*self.chambers, self.effort) if isinstance(one, (Trace, Effort))
+        )
         return tuple(dict.fromkeys(chain(*files)))
 
     def inclination_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""
         inclination = cylinder.inclination
-        return inclination if inclination is None or self.rotation != "under" else 180.0 - inclination
+        return (
+            inclination if inclination is None or self.rotation != "under" else 180.0 - inclination
+        )
 
     @property
     def strength_obstacle(self) -> str:
@@ -360,7 +424,9 @@ class Machine(Record):
             lengths = "its strength needs the lengths of the throw: 'crankshaft: {a: …, b: …, …}'"
             return f"no 'crankshaft' is given; {lengths}"
         if not self.cylinders:
-            return "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
+            return (
+                "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
+            )
         for mechanism in (cylinder.mechanism for cylinder in self.cylinders):
             if mechanism.quick_return or mechanism.radial(CrankAngle.of(0.0)) is None:
                 return f"the force on the crank pin of a {mechanism.name} is not known; give a slider-crank"
@@ -374,7 +440,10 @@ def firings(machine: Machine) -> list[tuple[float, int]]:
     cycle = 360 * machine.revolutions
     found = []
     for number, cylinder in enumerate(machine.cylinders, 1):
-        mechanism, each = cylinder.mechanism, list[tuple[int, bool]]()  # of every end that fires its turns, and which
+        mechanism, each = (
+            cylinder.mechanism,
+            list[tuple[int, bool]](),
+        )  # of every end that fires its turns, and which
         four = machine.cycle_of(cylinder) == "four-stroke"
         if four and mechanism.slides and not any(one.chambers for one in cylinder.pistons):
             each.append((2, False))
@@ -387,7 +456,10 @@ def firings(machine: Machine) -> list[tuple[float, int]]:
                     each.append((turns, end == "crank_end"))
         for turns, outer in each:
             first = mechanism.dead_centres()[outer] + cylinder.crank_position
-            found += [(within_cycle(turn + first, float(cycle)), number) for turn in range(0, cycle, 360 * turns)]
+            found += [
+                (rounded_within_cycle(turn + first, float(cycle)), number)
+                for turn in range(0, cycle, 360 * turns)
+            ]
     return sorted(found)
 
 
@@ -407,7 +479,9 @@ def of_cycle(machine: Machine, number: int) -> Machine:
             for end, chamber in piston.chambers.items():
                 if isinstance(chamber, Trace) and (count := len(chamber.over(period).samples)) > 1:
                     counts.append(count)
-                    ends[end] = alone.setdefault(id(chamber), chamber.of_cycle(min(number, count), period))
+                    ends[end] = alone.setdefault(
+                        id(chamber), chamber.of_cycle(min(number, count), period)
+                    )
             shown = replace(piston.indicator, **ends) if piston.indicator else None
             pistons.append(replace(piston, indicator=shown))
         cylinders.append(replace(cylinder, pistons=tuple(pistons)))

@@ -17,7 +17,7 @@ R = TypeVar("R")
 def values_of(record: Any) -> dict[str, Any]:
     """Return the values of a record by the names of its fields."""
     known = vars(record)
-    return {one.name: known[one.name] for one in fields(record)}
+    return {field.name: known[field.name] for field in fields(record)}
 
 
 def varies(value: object) -> bool:
@@ -34,7 +34,9 @@ def varies(value: object) -> bool:
     return bool(known["_varied"])
 
 
-def changed(record: Any, change: Callable[[Array], object], known: dict[int, object] | None = None) -> Any:
+def changed(
+    record: Any, change: Callable[[Array], object], known: dict[int, object] | None = None
+) -> Any:
     """Return a record with every array (machines,) changed, without checking its rules again.
 
     Objects without arrays are not copied, and an object in several places stays one object; known: changed objects by
@@ -53,7 +55,9 @@ def changed(record: Any, change: Callable[[Array], object], known: dict[int, obj
             held = vars(record)
             made = object.__new__(type(record))
             vars(made).update(values_of(record))
-            vars(made).update({name: changed(held[name], change, known) for name in held["_varied"]})
+            vars(made).update(
+                {name: changed(held[name], change, known) for name in held["_varied"]}
+            )
         known[id(record)] = made
     return known[id(record)]
 

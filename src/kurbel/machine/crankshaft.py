@@ -21,9 +21,21 @@ class Crankshaft(Record):
     overhung: the pin is outside bearing A, on a single web.
     """
 
-    a: float = field("length", "From the middle of the crank pin to bearing A, away from the flywheel", "a", above=0)
-    b: float = field("length", "From the middle of the crank pin to bearing B, next to the flywheel", "b", above=0)
-    web_distance: float = field("length", "From the middle of the crank pin to the middle of a web", "e", above=0)
+    a: float = field(
+        "length",
+        "From the middle of the crank pin to bearing A, away from the flywheel",
+        "a",
+        above=0,
+    )
+    b: float = field(
+        "length",
+        "From the middle of the crank pin to bearing B, next to the flywheel",
+        "b",
+        above=0,
+    )
+    web_distance: float = field(
+        "length", "From the middle of the crank pin to the middle of a web", "e", above=0
+    )
     web_thickness: float = field("length", "Thickness of a web along the shaft", "t", above=0)
     web_width: float = field("length", "Width of a web across its arm", "w", above=0)
     pin_diameter: float = field("length", "Diameter of the crank pin", "d_z", above=0)
@@ -39,7 +51,9 @@ class Crankshaft(Record):
     journal_diameter: float | None = field(
         "length", "Diameter of the journals", "d_j", above=0, absent="journals not examined"
     )
-    journal_length: float | None = field("length", "Length of a journal", "l_j", above=0, absent="no journal pressure")
+    journal_length: float | None = field(
+        "length", "Length of a journal", "l_j", above=0, absent="no journal pressure"
+    )
     flywheel_mass: float = field(
         "mass",
         "Mass of the flywheel",
@@ -69,12 +83,18 @@ class Crankshaft(Record):
     )
 
     bearing_metal: str | None = field(
-        ("gunmetal", "white-metal"), "Metal of the shells, by which p_m v of the crank pin is judged", absent="both"
+        ("gunmetal", "white-metal"),
+        "Metal of the shells, by which p_m v of the crank pin is judged",
+        absent="both",
     )
 
     def rules(self) -> Iterator[Rule]:
         beside = "beside the web" if self.overhung else "between the webs"
-        numbers = {"end": self._web_end, "span": self.span, "gap": 2 * self.web_distance - self.web_thickness}
+        numbers = {
+            "end": self._web_end,
+            "span": self.span,
+            "gap": 2 * self.web_distance - self.web_thickness,
+        }
         yield Rule(
             "web_thickness",
             self.web_thickness >= self.web_width,
@@ -91,7 +111,9 @@ class Crankshaft(Record):
         beyond: Truth = self.flywheel_position <= -self.span
         if self.overhung:
             before = self.b <= self.a
-            yield Rule("b", before, "{b} puts B before bearing A ({a}); an overhung pin lies beyond A")
+            yield Rule(
+                "b", before, "{b} puts B before bearing A ({a}); an overhung pin lies beyond A"
+            )
             beyond = beyond & ~np.asarray(before)
         yield Rule(
             "flywheel_position",
@@ -117,7 +139,11 @@ class Crankshaft(Record):
         )
         if self.rod_spacing is not None:
             too_far = self.rod_spacing >= self.pin_length
-            yield Rule("rod_spacing", too_far, "{rod_spacing} is not less than the length of the pin ({pin_length})")
+            yield Rule(
+                "rod_spacing",
+                too_far,
+                "{rod_spacing} is not less than the length of the pin ({pin_length})",
+            )
         yield from self._journal_rules()
 
     def _journal_rules(self) -> Iterator[Rule]:
@@ -127,12 +153,20 @@ class Crankshaft(Record):
         """
         if self.journal_length is None:
             return
-        has_flywheel = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(self.flywheel_position, 0)
+        has_flywheel = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(
+            self.flywheel_position, 0
+        )
         rooms: dict[str, Number] = {
             "the middle of bearing A and web A": self.a - self._web_end,
-            "the middle of bearing B and web B": np.inf if self.overhung else self.b - self._web_end,
-            "the middle of bearing A and half the way to B": self.span / 2 if self.overhung else np.inf,
-            "the middles of bearing B and flywheel": np.where(has_flywheel, abs(self.flywheel_position), np.inf),
+            "the middle of bearing B and web B": np.inf
+            if self.overhung
+            else self.b - self._web_end,
+            "the middle of bearing A and half the way to B": self.span / 2
+            if self.overhung
+            else np.inf,
+            "the middles of bearing B and flywheel": np.where(
+                has_flywheel, abs(self.flywheel_position), np.inf
+            ),
         }
         shortest = functools.reduce(np.minimum, rooms.values())
         for what, room in rooms.items():
@@ -207,7 +241,9 @@ class Counterweight(_Weight):
         most=360,
         absent="180 deg, opposite the throw",
     )
-    axial_position: float | None = field("length", "Its place along the shaft", "z", absent="that of its cylinder")
+    axial_position: float | None = field(
+        "length", "Its place along the shaft", "z", absent="that of its cylinder"
+    )
 
 
 class SharedCounterweights(Record):
@@ -237,7 +273,11 @@ class SharedCounterweights(Record):
         same = count == 2 and self.planes[0] == self.planes[1]
         message = "give two different places, such as '[-750 mm, 750 mm]', or leave it out"
         different = count if count != 2 else 1
-        yield Rule("planes", count not in (0, 2) or same, f"{count} of them, {different} different; {message}")
+        yield Rule(
+            "planes",
+            count not in (0, 2) or same,
+            f"{count} of them, {different} different; {message}",
+        )
 
 
 class BalanceShaft(_Weight):
@@ -246,7 +286,13 @@ class BalanceShaft(_Weight):
     _sense = alternative(
         Choice(
             ("with", "against"),
-            {"same": "with", "forward": "with", "+": "with", "opposite": "against", "backward": "against"},
+            {
+                "same": "with",
+                "forward": "with",
+                "+": "with",
+                "opposite": "against",
+                "backward": "against",
+            },
         ),
         "Sense of rotation: with the crank or against it",
         required=True,
@@ -264,13 +310,17 @@ class BalanceShaft(_Weight):
         most=360,
         absent="180 deg, away from the cylinder",
     )
-    axial_position: float | None = field("length", "Its place along the shaft", "z", absent="moments left out")
+    axial_position: float | None = field(
+        "length", "Its place along the shaft", "z", absent="moments left out"
+    )
 
 
 class Locomotive(Record):
     """The driven wheels of a locomotive, with its counterweights; the cylinders are halfway between them."""
 
-    wheel_distance: float = field("length", "Between the counterweights of the left and of the right wheel", above=0)
+    wheel_distance: float = field(
+        "length", "Between the counterweights of the left and of the right wheel", above=0
+    )
     wheel_diameter: float | None = field(
         "length", "Diameter of the driven wheels", "D", above=0, absent="speed of the shaft alone"
     )
@@ -282,5 +332,8 @@ class Locomotive(Record):
         absent="speed at which a wheel lifts is not computed",
     )
     hammer_limit: float | None = field(
-        "force", "Largest allowed hammer blow of a wheel", above=0, absent="permissible balanced share is not computed"
+        "force",
+        "Largest allowed hammer blow of a wheel",
+        above=0,
+        absent="permissible balanced share is not computed",
     )

@@ -12,7 +12,15 @@ import numpy as np
 from kurbel.arrays import Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
-from kurbel.declared.record import Entry, Record, Rule, Values, alternative, field, first_of
+from kurbel.declared.record import (
+    FieldValue,
+    Record,
+    Rule,
+    ValuesByKey,
+    alternative,
+    field,
+    first_of,
+)
 from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
 from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.parts import (
@@ -36,7 +44,9 @@ _SLIDING = ("inclination", "masses", "friction", "ram_force")
 """Keys, apart from those of pistons, of a cylinder whose output slides."""
 
 _OTHER_NAMES = {
-    **dict.fromkeys(("whitworth", "shaper", "quick-return", "crank-shaper", "slotted-link"), "slotted-lever"),
+    **dict.fromkeys(
+        ("whitworth", "shaper", "quick-return", "crank-shaper", "slotted-link"), "slotted-lever"
+    ),
     **dict.fromkeys(("crank-rocker", "four-bar-linkage", "4-bar"), "four-bar"),
     **dict.fromkeys(("crank-slider", "crosshead", "trunk-piston"), "slider-crank"),
     "parallelogram": "parallel-crank",
@@ -44,7 +54,7 @@ _OTHER_NAMES = {
 """Common name of a mechanism -> the word of the machine file."""
 
 
-def counterweights() -> Entry:
+def counterweights() -> FieldValue:
     """Return the field of the counterweights of a cylinder, next to its throw, or of the whole machine."""
     return field(
         OneOf(RecordForm(SharedCounterweights), Listing(RecordForm(Counterweight))),
@@ -69,7 +79,9 @@ class Cylinder(Record):
         "Kind of crank mechanism",
         absent="slider-crank",
     )
-    name: str = field(str, "Name of the cylinder", default="cylinder 1", absent="cylinder 1, cylinder 2, …")
+    name: str = field(
+        str, "Name of the cylinder", default="cylinder 1", absent="cylinder 1, cylinder 2, …"
+    )
     _like = alternative(
         str,
         "Name of an earlier cylinder that this one copies, except for the keys given here",
@@ -86,7 +98,9 @@ class Cylinder(Record):
     pistons: tuple[Piston, ...] = ()
     masses: Masses | None = field(Masses, "Masses of the moving parts", absent="no inertia")
     friction: Friction | None = field(
-        Friction, "Friction of crosshead, piston rings, pins and journals, or a force", absent="no friction"
+        Friction,
+        "Friction of crosshead, piston rings, pins and journals, or a force",
+        absent="no friction",
     )
     inclination: float | None = field(
         "angle",
@@ -136,7 +150,7 @@ class Cylinder(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         like = "'like' is for a list of 'cylinders', after another cylinder"
         yield Rule("like", "like" in given, like)
         alone = "a tandem piston is in addition to the cylinder's own one; give its 'bore'"
@@ -144,7 +158,11 @@ class Cylinder(Record):
 
     @classmethod
     def of_keys(
-        cls, piston: Piston | None = None, tandem: tuple[Piston, ...] = (), like: str = "", **keys: Any
+        cls,
+        piston: Piston | None = None,
+        tandem: tuple[Piston, ...] = (),
+        like: str = "",
+        **keys: Any,
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
         pistons = () if piston is None else (piston, *tandem)
@@ -163,7 +181,11 @@ class Cylinder(Record):
         if self.valve:
             yield from (rule.below("valve") for rule in self.valve.rules_on(self.mechanism))
         yield from _of_events(self)
-        at_point = [rule.below("point") for rule in self.point.rules_on(self.mechanism)] if self.point else []
+        at_point = (
+            [rule.below("point") for rule in self.point.rules_on(self.mechanism)]
+            if self.point
+            else []
+        )
         yield from at_point
         if not any(rule.broken for rule in at_point):
             yield from _of_output(self)
@@ -171,7 +193,9 @@ class Cylinder(Record):
             if self.friction and self.mechanism.slides:
                 yield from (rule.below("friction") for rule in _of_friction(self.friction, self))
             if rod and self.mechanism.slides:
-                yield from (rule.below("masses", "connecting_rod") for rule in _of_rod(rod, self.mechanism))
+                yield from (
+                    rule.below("masses", "connecting_rod") for rule in _of_rod(rod, self.mechanism)
+                )
 
 
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
@@ -185,7 +209,9 @@ def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
                 same = same & np.equal(np.round(one.bank_angle - other.bank_angle, 6) % 360.0, 0)
                 numbers = {"other": other.name, "place": one.axial_position}
                 place = ("cylinders", index, "axial_position")
-                rules.append(Rule(place, same, f"{message} 'axial_position' or 'bank_angle'", numbers))
+                rules.append(
+                    Rule(place, same, f"{message} 'axial_position' or 'bank_angle'", numbers)
+                )
         yield from first_of(iter(rules))
 
 
@@ -195,7 +221,11 @@ def may_lock(cylinder: Cylinder) -> Truth:
     locking: Truth = False
     if coefficient is None:
         return locking
-    widest = [rod for centre in (90.0, 270.0) if (rod := cylinder.mechanism.rod_angle(CrankAngle.of(centre)))]
+    widest = [
+        rod
+        for centre in (90.0, 270.0)
+        if (rod := cylinder.mechanism.rod_angle(CrankAngle.of(centre)))
+    ]
     for sin, cos in widest:
         locking = locking | (coefficient * np.abs(sin) >= cos)
     return locking & (coefficient > 0)
@@ -209,7 +239,11 @@ def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
         return
     given = {"bore": cylinder.pistons or None, **{key: vars(cylinder)[key] for key in _SLIDING}}
     for key, value in given.items():
-        yield Rule(key, value is not None, f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}")
+        yield Rule(
+            key,
+            value is not None,
+            f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}",
+        )
     returns = bool(cylinder.mechanism.turns and moment and np.any(moment.back))
     message = f"the output of a {kind} turns on and has no return stroke; give 'work' alone"
     yield Rule(("moment", "return"), returns, message)
@@ -226,7 +260,11 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
     """A crosshead needs a side force and a guide, rings a bore, pins a rod; a yoke must not lock."""
     mechanism, pistons, rings = cylinder.mechanism, cylinder.pistons, friction.rings
     kind, has_rod = mechanism.name, mechanism.has_rod
-    yield Rule("rings", rings is not None and not pistons, "rings rub on the bore; give the cylinder a 'bore'")
+    yield Rule(
+        "rings",
+        rings is not None and not pistons,
+        "rings rub on the bore; give the cylinder a 'bore'",
+    )
     by_gas = rings is not None and isinstance(rings.pressure, GasOnRings)
     without = by_gas and bool(pistons) and pistons[0].indicator is None
     yield Rule(("rings", "pressure"), without, "the gas presses on no ring without an 'indicator'")
@@ -244,7 +282,9 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
         apart = yoke.guide_length
         yield Rule("guides", apart is None, "'guides' needs their distance; give 'guide_length'")
         locks = apart is not None and 2 * friction.guides * yoke.crank >= apart
-        message = "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
+        message = (
+            "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
+        )
         yield Rule("guides", locks, message)
 
 
@@ -264,14 +304,20 @@ def _of_events(cylinder: Cylinder) -> Iterator[Rule]:
 def _of_card(card: Steam, valve: Valve | None) -> Iterator[Rule]:
     """Of the clearance the rule of the card itself, for events that it does not have yet."""
     if valve is None:
-        missing = "'cut_off' is missing; give it here, or the cylinder a 'valve', which sets all events"
+        missing = (
+            "'cut_off' is missing; give it here, or the cylinder a 'valve', which sets all events"
+        )
         yield Rule((), card.cut_off is None, missing)
         return
     twice = "the 'valve' sets cut_off, release, compression and lead; leave them out"
     for key in card.events:
         yield Rule(key, True, twice, at_key=True)
-    message = "the valve shuts the exhaust before the dead centre, and compression needs a final volume"
-    yield Rule("clearance", (card.clearance == 0) & valve.compresses, f"{message}; give 'clearance'")
+    message = (
+        "the valve shuts the exhaust before the dead centre, and compression needs a final volume"
+    )
+    yield Rule(
+        "clearance", (card.clearance == 0) & valve.compresses, f"{message}; give 'clearance'"
+    )
 
 
 def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:
@@ -280,7 +326,9 @@ def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:
     yield Rule((), not mechanism.has_rod, message)
     if mechanism.has_rod and rod.center_of_gravity is not None:
         length = mechanism.rod_length
-        endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+        endless = (
+            "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+        )
         yield Rule("center_of_gravity", np.isinf(length), endless)
         # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
         beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"

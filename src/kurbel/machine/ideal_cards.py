@@ -12,7 +12,7 @@ import numpy as np
 
 from kurbel.arrays import Number
 from kurbel.declared.forms.values import NumberForm
-from kurbel.declared.record import Entry, Record, Rule, alternative, field
+from kurbel.declared.record import FieldValue, Record, Rule, alternative, field
 
 CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume, within bounds for which p V^n can be computed."""
@@ -23,13 +23,15 @@ AIR_EXPONENT = 1.4
 """Exponent of the adiabatic line of air."""
 
 
-def _pressure(text: str, **more: Any) -> Entry:
+def _pressure(text: str, **more: Any) -> FieldValue:
     # beyond any machine; powers of the volume ratio, up to 1e60, cannot make it overflow
     return field("pressure", text, most=1e15, **more)
 
 
-def _exponent(text: str, absent: str, default: float | None = None, **more: Any) -> Entry:
-    return field("ratio", text, "n", default=default, above=0, most=10, absent=absent, example="1.3", **more)
+def _exponent(text: str, absent: str, default: float | None = None, **more: Any) -> FieldValue:
+    return field(
+        "ratio", text, "n", default=default, above=0, most=10, absent=absent, example="1.3", **more
+    )
 
 
 def _order(key: str, high: Number, low_name: str, low: Number) -> Rule:
@@ -60,7 +62,7 @@ def _above_vacuum(lift: Number, **pressures: Number | None) -> Iterator[Rule]:
             yield Rule((), pressure + lift <= 0, sentence, {"pressure": pressure})
 
 
-def _diagram_factor() -> Entry:
+def _diagram_factor() -> FieldValue:
     text = "p_i of the true card over that of the theoretical one, which is drawn lower about the back pressure"
     return field("ratio", text, "κ_d", default=1.0, above=0, most=1)
 
@@ -70,7 +72,9 @@ def _factor_notes(factor: float) -> tuple[str, ...]:
     if factor == 1:
         return ()
     most = f"{100 * (1 - factor):.3g} %"
-    return (f"diagram_factor {factor:g}: a real card loses at its corners and keeps its peak, here up to {most} low",)
+    return (
+        f"diagram_factor {factor:g}: a real card loses at its corners and keeps its peak, here up to {most} low",
+    )
 
 
 def _only_two_stroke(card: Record, cycle: str) -> Rule:
@@ -87,12 +91,22 @@ class Steam(Record):
     admission: float = _pressure("Pressure while steam is admitted")
     exhaust: float = _pressure("Pressure while steam leaves")
     cut_off: float | None = field(
-        "ratio", "Fraction of the stroke at which admission ends", above=0, most=1, absent="the `valve` sets all events"
+        "ratio",
+        "Fraction of the stroke at which admission ends",
+        above=0,
+        most=1,
+        absent="the `valve` sets all events",
     )
     clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
-    release: float = field("ratio", "Fraction of the stroke at which the exhaust opens", default=1.0, above=0, most=1)
+    release: float = field(
+        "ratio", "Fraction of the stroke at which the exhaust opens", default=1.0, above=0, most=1
+    )
     compression: float = field(
-        "ratio", "Fraction of the return stroke at which the exhaust closes", default=0.0, least=0, below=1
+        "ratio",
+        "Fraction of the return stroke at which the exhaust closes",
+        default=0.0,
+        least=0,
+        below=1,
     )
     lead: float = field(
         "ratio",
@@ -144,7 +158,9 @@ class Compressor(Record):
     delivery: float = _pressure("Pressure while the chamber empties", also=("discharge",))
     clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
     exponent: float = _exponent("Exponent of compression and expansion", "1.4, air", AIR_EXPONENT)
-    expansion_exponent: float | None = _exponent("Exponent of the expansion", "that of the compression")
+    expansion_exponent: float | None = _exponent(
+        "Exponent of the expansion", "that of the compression"
+    )
     unloaded: bool = field(
         bool,
         "Whether the suction valves are held open, so that nothing is delivered; may also be given with `compressor`",
@@ -183,7 +199,9 @@ class _Engine(Record):
     changes its gas at the outer dead centre.
     """
 
-    intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills")
+    intake: float = _pressure(
+        "Pressure in the cylinder when compression begins, and while it fills"
+    )
     peak: float | None = _pressure(
         "Pressure of injection, reached at constant volume", absent="that at the end of compression"
     )
@@ -197,7 +215,9 @@ class _Engine(Record):
         example="8",
         gives=lambda given: {"clearance": 1 / (given["compression_ratio"] - 1)},
     )
-    clearance: float = field(CLEARANCE, f"{_CLEARANCE}; or give `compression_ratio`", "c", instead="compression_ratio")
+    clearance: float = field(
+        CLEARANCE, f"{_CLEARANCE}; or give `compression_ratio`", "c", instead="compression_ratio"
+    )
     exhaust: float | None = _pressure(
         "Pressure while the burnt gas leaves, in a four-stroke cycle", absent="that of the intake"
     )
@@ -205,9 +225,13 @@ class _Engine(Record):
         "Exponent of the compression",
         "1.4, air",
         AIR_EXPONENT,
-        gives=lambda given: {"expansion_exponent": given.get("expansion_exponent", given["exponent"])},
+        gives=lambda given: {
+            "expansion_exponent": given.get("expansion_exponent", given["exponent"])
+        },
     )
-    expansion_exponent: float = _exponent("Exponent of the expansion", "that of the compression", AIR_EXPONENT)
+    expansion_exponent: float = _exponent(
+        "Exponent of the expansion", "that of the compression", AIR_EXPONENT
+    )
     diagram_factor: float = _diagram_factor()
 
     def rules(self) -> Iterator[Rule]:
@@ -235,7 +259,12 @@ class _Engine(Record):
         yield Rule((), self.exhaust is not None and cycle != "four-stroke", f"exhaust: {two}")
         yield from _above_vacuum(lift, intake=self.intake, exhaust=self.exhaust)
         if self.peak is not None:
-            end = after_polytrope(self.intake + lift, 1 + self.clearance, self.clearance, self.exponent) - lift
+            end = (
+                after_polytrope(
+                    self.intake + lift, 1 + self.clearance, self.clearance, self.exponent
+                )
+                - lift
+            )
             below = "peak: {peak:pressure} is below the end of the compression ({end:pressure})"
             # as much as rounding of the clearance may take from a peak that is just that pressure
             low = self.peak < end - 1e-9 * abs(end)
@@ -255,7 +284,9 @@ class Diesel(_Engine):
     pressure of injection is that at the end of the compression.
     """
 
-    cut_off: float = field("ratio", "Fraction of the stroke at which injection ends", above=0, below=1)
+    cut_off: float = field(
+        "ratio", "Fraction of the stroke at which injection ends", above=0, below=1
+    )
 
 
 IdealCard = Union[Steam, Compressor, Otto, Diesel]

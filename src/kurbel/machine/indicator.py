@@ -10,10 +10,17 @@ import numpy as np
 from kurbel.arrays import Number
 from kurbel.declared.forms.figures import Bound
 from kurbel.declared.forms.structures import Keyed, OneOf, RecordForm
-from kurbel.declared.forms.values import Choice, NumberForm, Points, order_faults, size_faults, unit_name
-from kurbel.declared.record import Record, Rule, Values, alternative, field
+from kurbel.declared.forms.values import (
+    Choice,
+    NumberForm,
+    Points,
+    order_faults,
+    size_faults,
+    unit_name,
+)
+from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import Factor, Point, written_unit
+from kurbel.declared.units import DiagramPoint, UnitFactor, written_unit
 from kurbel.errors import Fault, refuse
 from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, IdealCard, Otto, Steam
 from kurbel.machine.measured import Measured
@@ -48,7 +55,9 @@ class Rectangle:
         """Yield the rule that no pressure is below the vacuum; lift: added to make pressures absolute, in Pa."""
         if self.level is not None:
             below = "{level:pressure} is below the vacuum, which is at {vacuum:pressure}"
-            yield Rule((), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift})
+            yield Rule(
+                (), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift}
+            )
 
 
 class Drawn(Record):
@@ -59,14 +68,21 @@ class Drawn(Record):
 
     length: float = field(
         # keeps the unit in which it is written, so that the lengths of many cards are read one by one
-        NumberForm("length", above=0, becomes=lambda length, text: Bound(length, written_unit(text)), apart=True),
+        NumberForm(
+            "length",
+            above=0,
+            becomes=lambda length, text: Bound(length, written_unit(text)),
+            apart=True,
+        ),
         "Length of the card on the paper",
         "l",
     )
-    spring: float = field("spring", "Scale of the spring: height on the paper over pressure", above=0)
+    spring: float = field(
+        "spring", "Scale of the spring: height on the paper over pressure", above=0
+    )
 
     @property
-    def scales(self) -> tuple[str, Factor, float]:
+    def scales(self) -> tuple[str, UnitFactor, float]:
         """The unit of the points, what turns heights above the atmospheric line into Pa, the length in that unit."""
         if isinstance(self.length, Bound) and self.length.unit.startswith("in"):
             return "in", (254.0, 1e4 * self.spring), round(self.length * 1e4 / 254, 9)
@@ -77,7 +93,7 @@ _POINTS = Points("stroke fraction", "pressure", ratio=True)
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class CardLine:
     """One line of a card: pressures in Pa over fractions of the chamber's stroke, in the order of the process.
 
     Two points at one fraction are a vertical jump. `start` is the fraction at which the line begins, 0 or 1.
@@ -89,7 +105,10 @@ class Line:
     start: int
 
 
-STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansion", "exhaust", "intake", "compression")}
+STROKES = {
+    "two-stroke": ("expansion", "compression"),
+    "four-stroke": ("expansion", "exhaust", "intake", "compression"),
+}
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
@@ -129,8 +148,10 @@ class Card(Record):
     _compression = alternative(_POINTS, "Line while the chamber is compressed or empties")
     _intake = alternative(_POINTS, "Suction line of a four-stroke cycle")
     _exhaust = alternative(_POINTS, "Exhaust line of a four-stroke cycle")
-    lines: tuple[Line, ...] = ()
-    interpolate: str = field(("linear", "polytropic"), "How points are joined", default="linear", absent="linear")
+    lines: tuple[CardLine, ...] = ()
+    interpolate: str = field(
+        ("linear", "polytropic"), "How points are joined", default="linear", absent="linear"
+    )
     clearance: float | None = field(
         CLEARANCE_OR_NONE, "Clearance over stroke volume, for `polytropic`", absent="not known"
     )
@@ -140,7 +161,7 @@ class Card(Record):
     @classmethod
     def of_keys(
         cls,
-        unit: Factor | None = None,
+        unit: UnitFactor | None = None,
         drawn: "Drawn | None" = None,
         interpolate: str = "linear",
         clearance: float | None = None,
@@ -156,7 +177,9 @@ class Card(Record):
         paper, factor, whole = drawn.scales if drawn else ("", unit or (1, 1), 1.0)
         cycle = "four-stroke" if {"intake", "exhaust"} & given.keys() else "two-stroke"
         missing = [name for name in STROKES[cycle] if name not in given]
-        faults = [Fault((), f"the '{name}' line of the {cycle} card is missing") for name in missing]
+        faults = [
+            Fault((), f"the '{name}' line of the {cycle} card is missing") for name in missing
+        ]
         if interpolate == "polytropic" and not clearance:
             needed = "'polytropic' needs the 'clearance' volume over the stroke volume, more than 0"
             faults.append(Fault(("interpolate",), needed))
@@ -172,13 +195,17 @@ class Card(Record):
             if len(kept) < len(points):
                 notes.append(f"{name}: a point given twice counts once")
             pressures = tuple(p * factor[0] / factor[1] for _, p in kept)
-            lines.append(Line(name, tuple(x / whole for x, _ in kept), pressures, start))
+            lines.append(CardLine(name, tuple(x / whole for x, _ in kept), pressures, start))
         return cls(tuple(lines), interpolate, clearance, tuple(notes), drawn is not None)
 
     @property
     def flat(self) -> bool:
         """Whether each line is one pressure, as those of an ideal pump."""
-        return all(np.ndim(p) == 0 and p == line.pressures[0] for line in self.lines for p in line.pressures)
+        return all(
+            np.ndim(p) == 0 and p == line.pressures[0]
+            for line in self.lines
+            for p in line.pressures
+        )
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -190,7 +217,9 @@ class Card(Record):
         wanted = STROKES[cycle]
         lines = f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
         yield Rule((), len(self.lines) != len(wanted), lines)
-        lowest = reduce(np.minimum, (pressure for line in self.lines for pressure in line.pressures))
+        lowest = reduce(
+            np.minimum, (pressure for line in self.lines for pressure in line.pressures)
+        )
         numbers = {"lowest": lowest, "vacuum": 0.0 - lift}
         if self.interpolate == "polytropic":
             above = "{lowest:pressure} is not above the vacuum, as p V^n needs; write 'interpolate: linear'"
@@ -200,7 +229,7 @@ class Card(Record):
             yield Rule((), lowest + lift < 0, below, numbers)
 
 
-def _line_faults(points: list[Point], whole: float, unit: str) -> list[Fault]:
+def _line_faults(points: list[DiagramPoint], whole: float, unit: str) -> list[Fault]:
     """Return the first fault of a line that does not run once through the whole stroke.
 
     whole: the stroke in a unit of the paper, '' for fractions of it.
@@ -210,7 +239,11 @@ def _line_faults(points: list[Point], whole: float, unit: str) -> list[Fault]:
         x = points[beyond[0]][0]
         message = f"{x:g} {unit} is not on the card, which is {whole:g} {unit} long; its own dead centre is at 0"
         if not unit:
-            hint = f"; write {x / 100:g} here if the line is in percent" if 1 < x <= 100 and len(beyond) > 1 else ""
+            hint = (
+                f"; write {x / 100:g} here if the line is in percent"
+                if 1 < x <= 100 and len(beyond) > 1
+                else ""
+            )
             message = f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
         return [Fault((beyond[0],), message)]
     low, high = sorted((points[0][0], points[-1][0]))
@@ -233,15 +266,17 @@ class Constant(Record):
         """Return the card with two horizontal lines."""
         return Card(
             (
-                Line("expansion", (0.0, 1.0), (expansion, expansion), 0),
-                Line("compression", (1.0, 0.0), (compression, compression), 1),
+                CardLine("expansion", (0.0, 1.0), (expansion, expansion), 0),
+                CardLine("compression", (1.0, 0.0), (compression, compression), 1),
             )
         )
 
 
 _CHAMBER = Keyed(
     cases={
-        "mean_pressure": NumberForm("pressure", becomes=lambda pressure, _: Rectangle(mean=pressure)),
+        "mean_pressure": NumberForm(
+            "pressure", becomes=lambda pressure, _: Rectangle(mean=pressure)
+        ),
         "constant": RecordForm(Constant),
         "trace": RecordForm(Measured),
         "steam": RecordForm(Steam),
@@ -251,10 +286,14 @@ _CHAMBER = Keyed(
     },
     otherwise=RecordForm(Card),
     beside=("diagram_factor", "unloaded"),
-    texts={"mean_pressure": "Indicated mean pressure instead of a card: work and power are correct, forces are not"},
+    texts={
+        "mean_pressure": "Indicated mean pressure instead of a card: work and power are correct, forces are not"
+    },
 )
 _ONE_PRESSURE = NumberForm(
-    "pressure", or_else=", or a card below it", becomes=lambda pressure, _: Rectangle(level=pressure)
+    "pressure",
+    or_else=", or a card below it",
+    becomes=lambda pressure, _: Rectangle(level=pressure),
 )
 Chamber = Union[Rectangle, Card, IdealCard, Trace]
 """The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
@@ -262,7 +301,11 @@ Chamber = Union[Rectangle, Card, IdealCard, Trace]
 
 def _loaded(chamber: object) -> object:
     """Return a card as it is with its valves at work, for the other end."""
-    return replace(chamber, unloaded=False) if isinstance(chamber, Compressor) and chamber.unloaded else chamber
+    return (
+        replace(chamber, unloaded=False)
+        if isinstance(chamber, Compressor) and chamber.unloaded
+        else chamber
+    )
 
 
 class Indicator(Record):
@@ -289,15 +332,23 @@ class Indicator(Record):
         "of the head end",
         absent="open to the ambient",
         # each chamber's fractions count from its own dead centre, so that it is the same card
-        gives=lambda given: {"crank_end": _loaded(given.get("head_end"))} if given["crank_end"] == "mirrored" else {},
+        gives=lambda given: (
+            {"crank_end": _loaded(given.get("head_end"))}
+            if given["crank_end"] == "mirrored"
+            else {}
+        ),
     )
     absolute: bool = False
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         mirrored = given.get("crank_end") == "mirrored"
         none = "head_end" not in given and (mirrored or "crank_end" not in given)
-        yield Rule("crank_end" if mirrored else (), none, "the indicator shows no pressure; give 'head_end'")
+        yield Rule(
+            "crank_end" if mirrored else (),
+            none,
+            "the indicator shows no pressure; give 'head_end'",
+        )
         for end in ("head_end", "crank_end"):
             card = given.get(end)
             drawn = given.get("pressures") == "absolute" and isinstance(card, Card) and card.drawn

@@ -8,9 +8,16 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf, RecordForm
-from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, NumberForm, Points, unit_name
-from kurbel.declared.record import Record, Rule, Values, alternative, field
-from kurbel.declared.units import Factor, Point
+from kurbel.declared.forms.values import (
+    COLUMN_RANGE,
+    FILE_PATH,
+    Choice,
+    NumberForm,
+    Points,
+    unit_name,
+)
+from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
+from kurbel.declared.units import DiagramPoint, UnitFactor
 from kurbel.errors import Fault, RuleError, refused
 from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
@@ -22,12 +29,21 @@ class Columns(Record):
     """The layout of a file of columns; `what` was measured over the angles: pressures or torques."""
 
     what: ClassVar[str]
-    file = alternative(FILE_PATH, "File with a column of angles in degrees", example="indicator.csv")
-    angle_column = alternative(int, "Column of the angles, counted from 1", absent="1", needs="file")
-    angle_unit = alternative(
-        ("deg", "rad", "s", "ms"), "Unit of the angle column: an angle, or time", absent="deg", needs="file"
+    file = alternative(
+        FILE_PATH, "File with a column of angles in degrees", example="indicator.csv"
     )
-    recorded_speed = alternative("speed", "Constant speed at which times were recorded", above=0, needs="angle_unit")
+    angle_column = alternative(
+        int, "Column of the angles, counted from 1", absent="1", needs="file"
+    )
+    angle_unit = alternative(
+        ("deg", "rad", "s", "ms"),
+        "Unit of the angle column: an angle, or time",
+        absent="deg",
+        needs="file",
+    )
+    recorded_speed = alternative(
+        "speed", "Constant speed at which times were recorded", above=0, needs="angle_unit"
+    )
     angle_step = alternative(
         "angle",
         "Crank angle from one row to the next, instead of a column of angles",
@@ -36,7 +52,10 @@ class Columns(Record):
         needs="file",
     )
     skip_rows = alternative(
-        NumberForm(whole=True, least=0), "Number of lines before the first data", absent="0", needs="file"
+        NumberForm(whole=True, least=0),
+        "Number of lines before the first data",
+        absent="0",
+        needs="file",
     )
     delimiter = alternative(
         (*DELIMITERS, *DELIMITERS.values()),
@@ -45,16 +64,21 @@ class Columns(Record):
         also=("separator", "sep"),
         needs="file",
     )
-    decimal = alternative(tuple(DECIMALS), "Decimal point or decimal comma", absent="point", needs="file")
+    decimal = alternative(
+        tuple(DECIMALS), "Decimal point or decimal comma", absent="point", needs="file"
+    )
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         """Yield the rules on keys of the layout that contradict one another."""
         if "file" not in given:
             return
         key = f"{cls.what}_columns" if f"{cls.what}_columns" in given else f"{cls.what}_column"
         columns, own = given.get(key, 2), given.get("angle_column", 1)
-        clash = own in (columns if isinstance(columns, tuple) else (columns,)) and "angle_step" not in given
+        clash = (
+            own in (columns if isinstance(columns, tuple) else (columns,))
+            and "angle_step" not in given
+        )
         yield Rule(key, clash, f"column {own} is that of the angles")
         timed, speed = given.get("angle_unit") in SECONDS, "recorded_speed" in given
         message = "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"
@@ -74,7 +98,9 @@ class Columns(Record):
 class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 
-    motored: str = field(FILE_PATH, "File of a motored trace, in the same layout as the trace", example="motored.csv")
+    motored: str = field(
+        FILE_PATH, "File of a motored trace, in the same layout as the trace", example="motored.csv"
+    )
     loss_angle: float = field(
         "angle",
         "Thermodynamic loss angle: how far heat loss and leakage move the peak ahead of the dead centre",
@@ -88,23 +114,35 @@ class Measured(Columns):
 
     what = "pressure"
     file = Columns.file._replace(
-        text="File with a column of angles in degrees and one of pressures; or give `points`", required=True
+        text="File with a column of angles in degrees and one of pressures; or give `points`",
+        required=True,
     )
-    points = alternative(Points("deg", "pressure"), "Pressure over the crank angle; or give `file`", instead="file")
+    points = alternative(
+        Points("deg", "pressure"), "Pressure over the crank angle; or give `file`", instead="file"
+    )
     unit = alternative(unit_name("pressure"), "Unit of the pressures", required=True)
-    pressure_column = alternative(int, "Column of the pressures, counted from 1", absent="2", needs="file")
+    pressure_column = alternative(
+        int, "Column of the pressures, counted from 1", absent="2", needs="file"
+    )
     angle_zero = alternative(
         OneOf(NumberForm("angle"), RecordForm(Motored)),
         "Angle of the firing or inner dead centre in the file; or a motored trace from which it is found",
         absent="0 deg",
     )
     pressure_columns = alternative(
-        COLUMN_RANGE, "Columns of pressures, one for each measured cycle", instead="pressure_column", needs="file"
+        COLUMN_RANGE,
+        "Columns of pressures, one for each measured cycle",
+        instead="pressure_column",
+        needs="file",
     )
     angle_sense = alternative(
-        ("with", "against"), "Direction in which angles count: with the rotation or against it", absent="with"
+        ("with", "against"),
+        "Direction in which angles count: with the rotation or against it",
+        absent="with",
     )
-    scale = alternative("ratio", "Pressure, in the unit, per 1 of the file, such as bar per volt", absent="1")
+    scale = alternative(
+        "ratio", "Pressure, in the unit, per 1 of the file, such as bar per volt", absent="1"
+    )
     offset = alternative("pressure", "Pressure added after scaling", absent="0 bar")
     pegging = alternative(
         OneOf(Choice(("ambient",)), RecordForm(KnownLevel)),
@@ -112,9 +150,14 @@ class Measured(Columns):
         "begins",
         absent="pressures as measured",
     )
-    drift = alternative(("linear",), "Drift correction of every cycle, so that it closes", absent="none")
+    drift = alternative(
+        ("linear",), "Drift correction of every cycle, so that it closes", absent="none"
+    )
     clearance = alternative(
-        CLEARANCE, "Clearance over stroke volume, for exponents and volumes", "ε₀", absent="not known"
+        CLEARANCE,
+        "Clearance over stroke volume, for exponents and volumes",
+        "ε₀",
+        absent="not known",
     )
     compression_ratio = alternative(
         "ratio",
@@ -128,9 +171,9 @@ class Measured(Columns):
     @classmethod
     def of_keys(
         cls,
-        unit: Factor,
+        unit: UnitFactor,
         file: str | None = None,
-        points: list[Point] | None = None,
+        points: list[DiagramPoint] | None = None,
         angle_zero: float | Motored = 0.0,
         angle_sense: str = "with",
         scale: float = 1.0,
@@ -154,7 +197,9 @@ class Measured(Columns):
         if file is None:
             angles, figures = np.array(points, dtype=float).T
             values = pressures(figures[np.newaxis])
-            samples = whole_cycles(angles, values, lambda row: Fault(("points", row), ""), against=against)
+            samples = whole_cycles(
+                angles, values, lambda row: Fault(("points", row), ""), against=against
+            )
             laid_out = Layout()
         else:
             laid_out = cls.layout(layout)
@@ -180,13 +225,17 @@ class Measured(Columns):
         )
 
 
-def dead_centre(given: Motored, layout: Layout, base: Callable[[Array], Array], against: bool) -> tuple[float, str]:
+def dead_centre(
+    given: Motored, layout: Layout, base: Callable[[Array], Array], against: bool
+) -> tuple[float, str]:
     """Return the angle of the dead centre in degrees as the file counts, and a note on it; raises RuleError."""
     try:
         samples = samples_of_file(given.motored, layout, "pressure", base, against)
         peak, doubt = motored_peak(samples.angles, samples.values)
     except RuleError as error:
-        raise RuleError(*(fault._replace(path=("angle_zero", "motored")) for fault in error.faults)) from None
+        raise RuleError(
+            *(fault._replace(path=("angle_zero", "motored")) for fault in error.faults)
+        ) from None
     sense = -1 if against else 1
     zero = sense * (peak.place + given.loss_angle)
     note = (

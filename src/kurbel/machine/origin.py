@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from kurbel.declared.reading import LONGEST_VALUE, shown
+from kurbel.declared.reading import LONGEST_VALUE, text_in_one_line
 from kurbel.errors import Fault, MachineFileError
 
 _LINE_END = r"\r\n|[\n\r\x85\u2028\u2029]"  # what YAML takes for the end of a line, no more
@@ -39,14 +39,16 @@ class Origin(NamedTuple):
 
     def error(self, *faults: Fault) -> MachineFileError:
         """Return these faults as an error, each once and in the order of the file."""
-        lines = [*lines_of(self.text), ""]  # the end of a file may be a place, too
+        lines = [*yaml_lines(self.text), ""]  # the end of a file may be a place, too
         found = []
         for fault in sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column)):
-            path = tuple(shown(step) if isinstance(step, str) else step for step in fault.path)
+            path = tuple(
+                text_in_one_line(step) if isinstance(step, str) else step for step in fault.path
+            )
             found.append(fault._replace(path=path, source_line=lines[fault.line - 1]))
         return MachineFileError(self.name, found)
 
 
-def lines_of(text: str) -> list[str]:
+def yaml_lines(text: str) -> list[str]:
     """Return the lines of a text, split where YAML splits them."""
     return re.split(_LINE_END, text)

@@ -10,7 +10,7 @@ from kurbel.arrays import Number
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import Choice, NumberForm
 from kurbel.declared.keys import Key
-from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of
+from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field, first_of
 from kurbel.machine.indicator import Chamber, Indicator
 from kurbel.machine.pumped import Gas
 from kurbel.mechanisms import Mechanism
@@ -24,7 +24,9 @@ class ConnectingRod(Record):
     """The connecting rod and how it moves: by the share that reciprocates or, exactly, as the rigid body that it is."""
 
     mass: float = field("mass", "Mass of the rod", least=0)
-    share: float = field("ratio", "Reciprocating share of the mass", default=0.5, least=0, most=1, absent="1/2")
+    share: float = field(
+        "ratio", "Reciprocating share of the mass", default=0.5, least=0, most=1, absent="1/2"
+    )
     center_of_gravity: float | None = field(
         "length",
         "Distance of its centre of gravity from the crosshead pin",
@@ -34,7 +36,11 @@ class ConnectingRod(Record):
         needs="inertia",
     )
     inertia: float | None = field(
-        "inertia", "Moment of inertia about the centre of gravity", "I_r", least=0, needs="center_of_gravity"
+        "inertia",
+        "Moment of inertia about the centre of gravity",
+        "I_r",
+        least=0,
+        needs="center_of_gravity",
     )
 
     @property
@@ -44,7 +50,9 @@ class ConnectingRod(Record):
 
     def at_crosshead(self, length: float) -> float:
         """Reciprocating mass in kg: the share, or m (1 − a/L) with the length L of the rod in m."""
-        share = self.share if self.center_of_gravity is None else 1 - self.center_of_gravity / length
+        share = (
+            self.share if self.center_of_gravity is None else 1 - self.center_of_gravity / length
+        )
         return self.mass * share
 
     def at_pin(self, length: float) -> float:
@@ -107,13 +115,16 @@ class Masses(Record):
     pistons: tuple[float, ...] = ()
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         none = "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …"
         yield Rule((), not given, none)
 
     @classmethod
     def of_keys(
-        cls, connecting_rod: float | ConnectingRod | None = None, rotating: float = 0.0, **parts: Any
+        cls,
+        connecting_rod: float | ConnectingRod | None = None,
+        rotating: float = 0.0,
+        **parts: Any,
     ) -> "Masses":
         """Return the masses of these keys; each part is a mass or a tuple of masses."""
         sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in parts.items()}
@@ -130,17 +141,23 @@ class Masses(Record):
 
     def at_pin(self, rod_length: float) -> float:
         """Mass in kg that turns with the crank pin, with the share of a connecting rod of this length in m."""
-        return self.rotating + (self.connecting_rod.at_pin(rod_length) if self.connecting_rod else 0.0)
+        return self.rotating + (
+            self.connecting_rod.at_pin(rod_length) if self.connecting_rod else 0.0
+        )
 
     def at_crosshead(self, rod_length: float) -> float:
         """Reciprocating mass m in kg (R 298): all parts, and the share of a connecting rod of this length in m."""
-        return self.parts + (self.connecting_rod.at_crosshead(rod_length) if self.connecting_rod else 0.0)
+        return self.parts + (
+            self.connecting_rod.at_crosshead(rod_length) if self.connecting_rod else 0.0
+        )
 
 
 class GasOnRings(Record):
     """Rings that the gas presses on the wall (Redtenbacher): in proportion to the pressure difference."""
 
-    gas: float = field("ratio", "Pressure on the wall over the difference across the piston", "k", least=0)
+    gas: float = field(
+        "ratio", "Pressure on the wall over the difference across the piston", "k", least=0
+    )
 
 
 class Rings(Record):
@@ -175,15 +192,24 @@ _PINS: dict[str, tuple[str, str]] = {
 class Friction(Record):
     """Friction of the moving parts of a cylinder; what is None is left out."""
 
-    crosshead: float | None = field("ratio", "Coefficient of friction of the crosshead on its guide", "f", least=0)
+    crosshead: float | None = field(
+        "ratio", "Coefficient of friction of the crosshead on its guide", "f", least=0
+    )
     rings: Rings | None = field(Rings, "Piston rings")
-    constant: float | None = field("force", "Force opposing the motion, constant over the stroke", "F_0", least=0)
+    constant: float | None = field(
+        "force", "Force opposing the motion, constant over the stroke", "F_0", least=0
+    )
     guide: Guide | None = field(Guide, "Shoe of the crosshead", needs="crosshead")
     crank_pin: float | None = field(
         "ratio", "Coefficient of friction of the connecting rod on the crank pin", "f_Z", least=0
     )
     crank_pin_diameter: float | None = field(
-        "length", "Diameter of the crank pin", "d_z", above=0, absent="that of `crankshaft`", needs="crank_pin"
+        "length",
+        "Diameter of the crank pin",
+        "d_z",
+        above=0,
+        absent="that of `crankshaft`",
+        needs="crank_pin",
     )
     crosshead_pin: float | None = field(
         "ratio",
@@ -196,19 +222,32 @@ class Friction(Record):
         "length", "Diameter of the crosshead pin", "d_H", above=0, needs="crosshead_pin"
     )
     crosshead_pin_length: float | None = field(
-        "length", "Length of the crosshead pin", "l_H", above=0, absent="no pressure on it", needs="crosshead_pin"
+        "length",
+        "Length of the crosshead pin",
+        "l_H",
+        above=0,
+        absent="no pressure on it",
+        needs="crosshead_pin",
     )
     journals: float | None = field(
         "ratio", "Coefficient of friction of the journals in the main bearings", "f_j", least=0
     )
     journal_diameter: float | None = field(
-        "length", "Diameter of the journals", "d_j", above=0, absent="that of `crankshaft`", needs="journals"
+        "length",
+        "Diameter of the journals",
+        "d_j",
+        above=0,
+        absent="that of `crankshaft`",
+        needs="journals",
     )
     block: float | None = field(
         "ratio", "Coefficient of friction of the sliding block in a Scotch yoke", "f_b", least=0
     )
     guides: float | None = field(
-        "ratio", "Coefficient of friction of the two guides of a Scotch yoke, at `guide_length`", "f_g", least=0
+        "ratio",
+        "Coefficient of friction of the two guides of a Scotch yoke, at `guide_length`",
+        "f_g",
+        least=0,
     )
 
     def rules(self) -> Iterator[Rule]:
@@ -230,11 +269,19 @@ class Friction(Record):
         """
         for name in self.of_pins:
             here, there = _PINS[name]
-            elsewhere = f"'{there}' in 'crankshaft'" if there and shaft and vars(shaft)[there] is not None else ""
+            elsewhere = (
+                f"'{there}' in 'crankshaft'"
+                if there and shaft and vars(shaft)[there] is not None
+                else ""
+            )
             if name == "crank_pin" and pin_of_yoke is not None:
                 elsewhere = "'pin_diameter'"
             given = vars(self)[here] is not None
-            yield Rule(here, given and bool(elsewhere), f"{elsewhere} gives the same; leave one of them out")
+            yield Rule(
+                here,
+                given and bool(elsewhere),
+                f"{elsewhere} gives the same; leave one of them out",
+            )
             needed = f"'{name}' needs a diameter: write for instance '{here}: 120 mm'"
             or_there = f", or give '{there}' in 'crankshaft'" if there else ""
             yield Rule(name, not given and not elsewhere, needed + or_there)
@@ -243,20 +290,31 @@ class Friction(Record):
 class RamForce(Record):
     """A force on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
 
-    work: float = field("force", "Force opposing the motion on the working stroke", "P_a", default=0.0, least=0)
+    work: float = field(
+        "force", "Force opposing the motion on the working stroke", "P_a", default=0.0, least=0
+    )
     back: float = field(
-        "force", "Force opposing the motion on the return stroke", "P_r", default=0.0, least=0, key="return"
+        "force",
+        "Force opposing the motion on the return stroke",
+        "P_r",
+        default=0.0,
+        least=0,
+        key="return",
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        yield Rule((), not given, "give 'work', the force on the working stroke, or 'return', or both")
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
+        yield Rule(
+            (), not given, "give 'work', the force on the working stroke, or 'return', or both"
+        )
 
 
 class Moment(RamForce):
     """A moment on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 
-    work: float = field("torque", "Moment opposing the motion on the working stroke", "M_a", default=0.0, least=0)
+    work: float = field(
+        "torque", "Moment opposing the motion on the working stroke", "M_a", default=0.0, least=0
+    )
     back: float = field(
         "torque",
         "Moment opposing the motion on the return stroke",
@@ -294,9 +352,15 @@ class RodPoint(Record):
     def rules_on(self, mechanism: Mechanism) -> Iterator[Rule]:
         """Yield what keeps the point from being one of this mechanism."""
         endless = np.isinf(mechanism.coupler_length)
-        yield Rule((), endless, f"this {mechanism.name} has no connecting rod of a length, of which it were a point")
+        yield Rule(
+            (),
+            endless,
+            f"this {mechanism.name} has no connecting rod of a length, of which it were a point",
+        )
         other = np.logical_not(endless) & (self.origin not in ("crank_pin", mechanism.far_pin))
-        yield Rule("from", other, f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}")
+        yield Rule(
+            "from", other, f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}"
+        )
 
 
 class Piston(Record):
@@ -306,7 +370,9 @@ class Piston(Record):
     """
 
     bore: float = field("length", "Diameter of the cylinder", "d", above=0)
-    head_end_rod: float = field("length", "Diameter of the rod through the head end", default=0.0, least=0)
+    head_end_rod: float = field(
+        "length", "Diameter of the rod through the head end", default=0.0, least=0
+    )
     crank_end_rod: float = field(
         "length",
         "Diameter of the rod through the crank end",
@@ -315,14 +381,20 @@ class Piston(Record):
         also=("piston_rod", "rod_diameter"),
     )
     indicator: Indicator | None = field(
-        Indicator, "Pressures on the two sides", absent="no gas force", also=("pressure", "card", "trace")
+        Indicator,
+        "Pressures on the two sides",
+        absent="no gas force",
+        also=("pressure", "card", "trace"),
     )
     name: str = field(str, "Name of the piston", default="piston", absent="piston")
     gas: Gas | None = field(Gas, "Gas that the piston draws in", absent="that of the machine")
     lever_ratio: float = 1.0
 
     def rules(self) -> Iterator[Rule]:
-        for key, rod in (("head_end_rod", self.head_end_rod), ("crank_end_rod", self.crank_end_rod)):
+        for key, rod in (
+            ("head_end_rod", self.head_end_rod),
+            ("crank_end_rod", self.crank_end_rod),
+        ):
             yield Rule(key, rod >= self.bore, f"{{{key}}} is no thinner than the bore ({{bore}})")
 
     @property
@@ -356,7 +428,9 @@ class Piston(Record):
         """Yield the first thing at each end that does not fit the cycle or the ambient pressure in Pa."""
         lift = 0.0 if self.indicator and self.indicator.absolute else ambient
         for end, chamber in self.chambers.items():
-            yield from (rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift)))
+            yield from (
+                rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift))
+            )
 
 
 class TandemPiston(Piston):
@@ -373,4 +447,6 @@ class TandemPiston(Piston):
 
     def rules(self) -> Iterator[Rule]:
         yield from super().rules()
-        yield Rule("lever_ratio", self.lever_ratio == 0, "a piston with a lever ratio of 0 does not move")
+        yield Rule(
+            "lever_ratio", self.lever_ratio == 0, "a piston with a lever ratio of 0 does not move"
+        )

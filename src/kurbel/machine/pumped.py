@@ -14,7 +14,11 @@ class Gas(Record):
     """The gas that a compressor draws in, as an ideal one; what is None is left out, or as in the whole machine."""
 
     inlet_temperature: float = field(
-        "temperature", "Temperature of the gas where it is drawn in", "T_1", above=0, example="20 °C"
+        "temperature",
+        "Temperature of the gas where it is drawn in",
+        "T_1",
+        above=0,
+        example="20 °C",
     )
     gas_constant: float | None = field(
         "gas_constant",
@@ -46,7 +50,9 @@ class Gas(Record):
 class Liquid(Record):
     """What a pump moves."""
 
-    density: float = field("density", "Density", "ρ", default=WATER[0], above=0, absent="1000 kg/m³, water")
+    density: float = field(
+        "density", "Density", "ρ", default=WATER[0], above=0, absent="1000 kg/m³, water"
+    )
     vapour_pressure: float = field(
         "pressure",
         "Absolute pressure at which the liquid boils",
@@ -70,12 +76,20 @@ class Vessel(Record):
         example="5 %",
     )
     exponent: float = field(
-        "ratio", "Exponent of p V^n of its air", "n", default=1.0, least=0.5, most=2, absent="1, isothermal"
+        "ratio",
+        "Exponent of p V^n of its air",
+        "n",
+        default=1.0,
+        least=0.5,
+        most=2,
+        absent="1, isothermal",
     )
 
     def rules(self) -> Iterator[Rule]:
         nothing = self.volume is None and self.pressure_swing is None
-        yield Rule((), nothing, "give the 'volume' of the vessel, or the 'pressure_swing' that it may have")
+        yield Rule(
+            (), nothing, "give the 'volume' of the vessel, or the 'pressure_swing' that it may have"
+        )
 
 
 class Pipe(Record):
@@ -83,9 +97,17 @@ class Pipe(Record):
 
     length: float = field("length", "Length of the pipe", "l", above=0, example="12 m")
     diameter: float = field("length", "Bore of the pipe", "d", above=0, example="100 mm")
-    lift: float | None = field("length", "Height that the pipe lifts the liquid", "h", least=0, absent="not compared")
+    lift: float | None = field(
+        "length", "Height that the pipe lifts the liquid", "h", least=0, absent="not compared"
+    )
     friction_factor: float = field(
-        "ratio", "Friction factor of the pipe (Darcy)", "f", default=0.0, least=0, most=1, absent="0, no friction"
+        "ratio",
+        "Friction factor of the pipe (Darcy)",
+        "f",
+        default=0.0,
+        least=0,
+        most=1,
+        absent="0, no friction",
     )
     vessel: Vessel | None = field(Vessel, "Air vessel between pipe and pump", absent="none")
 
@@ -93,7 +115,13 @@ class Pipe(Record):
 class Pump(Record):
     """What a pump's flow depends on besides its pistons."""
 
-    slip: float = field("ratio", "Share of the displaced volume that is not delivered", default=0.0, least=0, below=1)
+    slip: float = field(
+        "ratio",
+        "Share of the displaced volume that is not delivered",
+        default=0.0,
+        least=0,
+        below=1,
+    )
     liquid: Liquid = field(Liquid, "What is pumped", default=Liquid(), absent="water")
     suction_pipe: Pipe | None = field(Pipe, "Pipe to the pump", absent="suction lift left out")
     delivery_pipe: Pipe | None = field(Pipe, "Pipe from the pump", absent="left out")

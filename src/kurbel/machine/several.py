@@ -72,7 +72,9 @@ class EqualCylinders(Record):
                 replace(
                     each,
                     name=f"{each.name or 'cylinder'} {index + 1}",
-                    crank_position=self.crank_positions[index] if self.crank_positions else each.crank_position,
+                    crank_position=self.crank_positions[index]
+                    if self.crank_positions
+                    else each.crank_position,
                     bank_angle=each.bank_angle + bank,
                     inclination=incline,
                     axial_position=along,
@@ -91,8 +93,11 @@ def in_order(
     if isinstance(cylinders, tuple):
         if order:
             return fired(cylinders, order, cycle, ("firing_order",))
-        free = [one.crank_position is None for one in cylinders]
-        at_pins = [replace(one, crank_position=0.0) if alone else one for one, alone in zip(cylinders, free)]
+        free = [cylinder.crank_position is None for cylinder in cylinders]
+        at_pins = [
+            replace(one, crank_position=0.0) if alone else one
+            for one, alone in zip(cylinders, free)
+        ]
         return in_even_turns(at_pins, free, cycle)
     equal, each = cylinders, cylinders.cylinders
     if order and (equal.firing_order or equal.crank_positions):
@@ -111,11 +116,15 @@ def in_order(
         )
         refused(message, "cylinders")
     # on one pin each dead centre follows by the angle between the stroke lines
-    on_pin = [replace(one, crank_position=(one.crank_position or 0.0) + one.bank_angle) for one in each]
+    on_pin = [
+        replace(one, crank_position=(one.crank_position or 0.0) + one.bank_angle) for one in each
+    ]
     return in_even_turns(on_pin, [True] * equal.count, cycle)
 
 
-def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: str, where: Path) -> tuple[Cylinder, ...]:
+def fired(
+    cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: str, where: Path
+) -> tuple[Cylinder, ...]:
     """Return the cylinders with the crank positions, from cylinder 1, of a firing order.
 
     cycle: that of the machine; where: the place of the order, for errors. Raises RuleError if it does not name each
@@ -123,11 +132,22 @@ def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: str, whe
     """
     if len(order) != len(cylinders):
         refused(f"it names {len(order)} cylinders, the machine has {len(cylinders)}", *where)
-    given = [("cylinders", index, "crank_position") for index, one in enumerate(cylinders) if one.crank_position]
-    refuse(*(Fault(place, "'firing_order' sets the crank positions; leave it out") for place in given))
-    longest = 360.0 * max(CYCLES[one.cycle or cycle] for one in cylinders)
-    late = [(order.index(number) - order.index(1)) % len(order) for number in range(1, len(order) + 1)]
-    return tuple(replace(one, crank_position=longest * turn / len(order)) for one, turn in zip(cylinders, late))
+    given = [
+        ("cylinders", index, "crank_position")
+        for index, one in enumerate(cylinders)
+        if one.crank_position
+    ]
+    refuse(
+        *(Fault(place, "'firing_order' sets the crank positions; leave it out") for place in given)
+    )
+    longest = 360.0 * max(CYCLES[cylinder.cycle or cycle] for cylinder in cylinders)
+    late = [
+        (order.index(number) - order.index(1)) % len(order) for number in range(1, len(order) + 1)
+    ]
+    return tuple(
+        replace(one, crank_position=longest * turn / len(order))
+        for one, turn in zip(cylinders, late)
+    )
 
 
 _TOGETHER = 12
@@ -136,7 +156,9 @@ _ON_A_PIN = 9
 """Cylinders that are compared together where there are more: a row of a large radial engine."""
 
 
-def in_even_turns(cylinders: Sequence[Cylinder], free: Sequence[bool], cycle: str) -> tuple[Cylinder, ...]:
+def in_even_turns(
+    cylinders: Sequence[Cylinder], free: Sequence[bool], cycle: str
+) -> tuple[Cylinder, ...]:
     """Return the cylinders, each free one firing in that turn of its four-stroke cycle which is most even.
 
     The sum of the squared firing intervals is the least one; among equals the firing order reads smallest. Cylinder 1
@@ -146,11 +168,14 @@ def in_even_turns(cylinders: Sequence[Cylinder], free: Sequence[bool], cycle: st
     choosing = [place for place in firing if free[place] and place > 0]
     angles = {place: cylinders[place].crank_position for place in firing}
     fixed = {place: angle for place, angle in angles.items() if place not in choosing}
-    for pin in _pins(cylinders, choosing) if len(firing) > _TOGETHER else [choosing] if choosing else []:
+    for pin in (
+        _pins(cylinders, choosing) if len(firing) > _TOGETHER else [choosing] if choosing else []
+    ):
         turns = product(*((angles[place], angles[place] + 360.0) for place in pin))
         fixed = min(({**fixed, **dict(zip(pin, chosen))} for chosen in turns), key=_unevenness)
     return tuple(
-        replace(one, crank_position=fixed[place]) if place in choosing else one for place, one in enumerate(cylinders)
+        replace(one, crank_position=fixed[place]) if place in choosing else one
+        for place, one in enumerate(cylinders)
     )
 
 
@@ -163,18 +188,22 @@ def _pins(cylinders: Sequence[Cylinder], places: Sequence[int]) -> list[list[int
         pins[place] = one.axial_position or 0.0, turned
     along = sorted(places, key=lambda place: pins[place][0])
     each = [list(group) for _, group in groupby(along, lambda place: pins[place])]
-    return [one[start : start + _ON_A_PIN] for one in each for start in range(0, len(one), _ON_A_PIN)]
+    return [
+        one[start : start + _ON_A_PIN] for one in each for start in range(0, len(one), _ON_A_PIN)
+    ]
 
 
 def _unevenness(angles: Mapping[int, float]) -> tuple[float, list[int]]:
     """Return the sum of the squared firing intervals, and the cylinders in the order in which they fire."""
     # rounded, since equal sums may differ by rounding
-    squares = round(sum(one * one for one in intervals(angles.values(), 720.0)), 6)
+    squares = round(sum(interval * interval for interval in intervals(angles.values(), 720.0)), 6)
     first = angles[min(angles)]
-    return squares, sorted(angles, key=lambda place: (within_cycle(angles[place] - first, 720.0), place))
+    return squares, sorted(
+        angles, key=lambda place: (rounded_within_cycle(angles[place] - first, 720.0), place)
+    )
 
 
-def within_cycle(angle: float, cycle: float) -> float:
+def rounded_within_cycle(angle: float, cycle: float) -> float:
     """Return an angle of the cycle, in degrees."""
     return round(angle % cycle, 9) % cycle
 
@@ -185,5 +214,7 @@ def intervals(angles: Iterable[float], cycle: float) -> list[float]:
     >>> intervals([450, 0], 720)
     [450.0, 270.0]
     """
-    found = sorted(within_cycle(angle, cycle) for angle in angles)
-    return [float(round(after - one, 9)) for one, after in zip(found, (*found[1:], found[0] + cycle))]
+    found = sorted(rounded_within_cycle(angle, cycle) for angle in angles)
+    return [
+        float(round(after - one, 9)) for one, after in zip(found, (*found[1:], found[0] + cycle))
+    ]

@@ -38,7 +38,9 @@ class ShaftPart(Record):
     word: `ground` or `flywheel`, which have no keys, else an empty text.
     """
 
-    name: str | None = field(str, "What the table calls it", absent="the cylinder, or mass 1, mass 2, …")
+    name: str | None = field(
+        str, "What the table calls it", absent="the cylinder, or mass 1, mass 2, …"
+    )
     inertia: float | None = field(
         "inertia",
         "Moment of inertia of a mass; with a cylinder, that of the rotating parts in addition to its crank train",
@@ -49,23 +51,37 @@ class ShaftPart(Record):
         OneOf(TEXT, Listing(TEXT)),
         "Name of the cylinder whose crank is here, or a list of those on one pin; its masses count with the mean of "
         "their reduced inertia over one turn",
-        gives=lambda given: {"cylinder": (one,) if isinstance(one := given["cylinder"], str) else one},
+        gives=lambda given: {
+            "cylinder": (one,) if isinstance(one := given["cylinder"], str) else one
+        },
     )
     load: bool | None = field(
-        bool, "Whether this mass takes the load", absent="the last; the first if cranks are at the last"
+        bool,
+        "Whether this mass takes the load",
+        absent="the last; the first if cranks are at the last",
     )
     stiffness: float | None = field(
         "stiffness", "Stiffness of a shaft segment; or give `diameter` and `length`", "k", above=0
     )
     diameter: float | None = field(
-        "length", "Diameter of a shaft segment; if a stiffness is given, used for the stress only", "d", above=0
+        "length",
+        "Diameter of a shaft segment; if a stiffness is given, used for the stress only",
+        "d",
+        above=0,
     )
     length: float | None = field(
         "length", "Length of a shaft segment", "l", above=0, instead="stiffness", needs="diameter"
     )
-    bore: float | None = field("length", "Bore of a hollow shaft segment", "d_i", least=0, absent="0", needs="diameter")
+    bore: float | None = field(
+        "length", "Bore of a hollow shaft segment", "d_i", least=0, absent="0", needs="diameter"
+    )
     shear_modulus: float | None = field(
-        "stress", "Shear modulus of a shaft segment", "G", above=0, absent="82 GPa, steel", needs="length"
+        "stress",
+        "Shear modulus of a shaft segment",
+        "G",
+        above=0,
+        absent="82 GPa, steel",
+        needs="length",
     )
     density: float | None = field(
         "density",
@@ -92,13 +108,21 @@ class ShaftPart(Record):
         absent="0",
     )
     gear: float | None = field(
-        "ratio", "Speed ratio: speed after the gear over speed before it, in the order of the list", "u", above=0
+        "ratio",
+        "Speed ratio: speed after the gear over speed before it, in the order of the list",
+        "u",
+        above=0,
     )
 
     word: str = ""
 
     def rules(self) -> Iterator[Rule]:
-        given = [(kind, key) for kind, keys in _KEYS.items() for key in keys if vars(self)[key] is not None]
+        given = [
+            (kind, key)
+            for kind, keys in _KEYS.items()
+            for key in keys
+            if vars(self)[key] is not None
+        ]
         piece = "'stiffness', or 'diameter' and 'length', of a shaft segment"
         nothing = f"give 'inertia' or 'cylinder' of a mass, {piece}, or 'gear'"
         yield Rule((), not given and not self.word, nothing)
@@ -111,16 +135,24 @@ class ShaftPart(Record):
         message = "the segment has no stiffness: give 'stiffness', or 'diameter' and 'length'"
         yield Rule((), kind == SEGMENT and none, message)
         none = self.inertia is None and self.cylinder is None
-        yield Rule("load", kind == "mass" and none, "the mass has no inertia: give 'inertia' or 'cylinder'")
+        yield Rule(
+            "load", kind == "mass" and none, "the mass has no inertia: give 'inertia' or 'cylinder'"
+        )
         both = self.gear is not None and self.damping is not None
         yield Rule("damping", both, "is for a mass or a shaft segment; a gear has none")
         if self.bore is not None and self.diameter is not None:
-            yield Rule("bore", self.bore >= self.diameter, "{bore} is not less than the diameter ({diameter})")
+            yield Rule(
+                "bore",
+                self.bore >= self.diameter,
+                "{bore} is not less than the diameter ({diameter})",
+            )
 
     @property
     def kind(self) -> str:
         """What it is: `mass`, `shaft segment`, `gear` or `ground`; a mass, too, is the flywheel of the machine."""
-        given = [kind for kind, keys in _KEYS.items() if any(vars(self)[key] is not None for key in keys)]
+        given = [
+            kind for kind, keys in _KEYS.items() if any(vars(self)[key] is not None for key in keys)
+        ]
         return GROUND if self.word == GROUND else (*given, "mass")[0]
 
     @property
@@ -131,7 +163,10 @@ class ShaftPart(Record):
 
 SHAFT = Listing(
     OneOf(
-        Choice((GROUND, FLYWHEEL), means={GROUND: ShaftPart(word=GROUND), FLYWHEEL: ShaftPart(word=FLYWHEEL)}),
+        Choice(
+            (GROUND, FLYWHEEL),
+            means={GROUND: ShaftPart(word=GROUND), FLYWHEEL: ShaftPart(word=FLYWHEEL)},
+        ),
         RecordForm(ShaftPart),
     )
 )
@@ -205,11 +240,15 @@ class ShaftLine:
 def shaft_faults(parts: Sequence[ShaftPart | Reported], cylinders: Sequence[str]) -> list[Fault]:
     """Return what is wrong with a list; if parts could not be read, only the faults of single other parts."""
     faults, seen = [], set[str]()
-    named = [(index, part.cylinder or ()) for index, part in enumerate(parts) if part is not REFUSED]
+    named = [
+        (index, part.cylinder or ()) for index, part in enumerate(parts) if part is not REFUSED
+    ]
     for place, name in [((index, "cylinder"), name) for index, names in named for name in names]:
         if name not in cylinders:
             there = f"the machine has {', '.join(cylinders) or 'none'}"
-            faults.append(Fault(place, f"no cylinder '{name}'{did_you_mean(name, tuple(cylinders))}; {there}"))
+            faults.append(
+                Fault(place, f"no cylinder '{name}'{did_you_mean(name, tuple(cylinders))}; {there}")
+            )
         elif name in seen:
             faults.append(Fault(place, f"'{name}' is in the shaft line twice"))
         seen.add(name)
@@ -228,22 +267,38 @@ def _of_order(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str]]:
     kinds = [part.kind for part in parts]
     for index, (before, kind, after) in enumerate(zip(["", *kinds], kinds, [*kinds[1:], ""])):
         here, gear, inside = (index,), (index, "gear"), bool(before and after)
-        yield kind == SEGMENT and not inside, here, "a shaft line begins and ends with a mass, or with 'ground'"
+        yield (
+            kind == SEGMENT and not inside,
+            here,
+            "a shaft line begins and ends with a mass, or with 'ground'",
+        )
         twice = "no shaft segment between this mass and the one before; give it, or one mass"
         yield kind == before == "mass", here, twice
-        in_series = kind == before == SEGMENT and not (parts[index].has_inertia or parts[index - 1].has_inertia)
+        in_series = kind == before == SEGMENT and not (
+            parts[index].has_inertia or parts[index - 1].has_inertia
+        )
         damped = in_series and bool(parts[index].damping or parts[index - 1].damping)
-        yield damped, here, "segments in series with a damper cannot be combined; give a mass between them"
+        yield (
+            damped,
+            here,
+            "segments in series with a damper cannot be combined; give a mass between them",
+        )
         yield kind == GROUND and inside, here, "'ground' is a fixed end; it must be first or last"
         at_end = kind == "gear" and not inside
         yield at_end, gear, "a gear joins two parts; give what comes before and after it"
         massless = kind == "gear" and inside and "mass" not in (before, after)
         yield massless, gear, "gears have inertia; give it as a mass before or after the gear"
         held = GROUND in (kind, before) and bool({kind, before} & {"mass", "gear"})
-        yield held, here, "a shaft segment is missing between 'ground' and the first mass; give its stiffness"
+        yield (
+            held,
+            here,
+            "a shaft segment is missing between 'ground' and the first mass; give its stiffness",
+        )
     gears, grounds, cranks, loads = (
         [index for index, of_this in enumerate(each) if of_this]
-        for each in zip(*((part.gear, part.word == GROUND, part.cylinder, part.load) for part in parts))
+        for each in zip(
+            *((part.gear, part.word == GROUND, part.cylinder, part.load) for part in parts)
+        )
     )
     one = "one reduction is all that a shaft line may have; refer the others to it by u²"
     yield len(gears) > 1, (*gears[1:2], "gear"), one
@@ -253,7 +308,11 @@ def _of_order(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str]]:
     yield kinds.count("mass") + min(len(grounds), 1) < 2, (), single
     yield len(loads) > 1, (*loads[1:2], "load"), "one mass takes the load; leave one of them out"
     around = bool(gears and cranks and cranks[0] < gears[0] < cranks[-1])
-    yield around, (*gears[:1], "gear"), "there are cranks before and after the gear; all must turn at one speed"
+    yield (
+        around,
+        (*gears[:1], "gear"),
+        "there are cranks before and after the gear; all must turn at one speed",
+    )
 
 
 def line_of(parts: Sequence[ShaftPart], cylinders: Sequence[str] = ()) -> ShaftLine:
@@ -344,7 +403,9 @@ class _Assembly:
         return behind
 
 
-def _with_speeds(parts: Sequence[ShaftPart], speed: float = 1.0) -> Iterator[tuple[ShaftPart, float]]:
+def _with_speeds(
+    parts: Sequence[ShaftPart], speed: float = 1.0
+) -> Iterator[tuple[ShaftPart, float]]:
     """Yield each item with its speed over that of the first one."""
     for part in parts:
         if part.gear is not None:
@@ -390,6 +451,8 @@ def _segment(part: ShaftPart, ratio: float) -> ShaftSegment:
 def _in_series(segment: ShaftSegment, other: ShaftSegment) -> ShaftSegment:
     """Return two segments without inertia as one: 1/k = Σ 1/k; the loss factor is the mean over what they store."""
     softness = 1 / segment.stiffness + 1 / other.stiffness
-    loss = (segment.loss_factor / segment.stiffness + other.loss_factor / other.stiffness) / softness
+    loss = (
+        segment.loss_factor / segment.stiffness + other.loss_factor / other.stiffness
+    ) / softness
     sections = (*segment.sections, *other.sections)
     return replace(segment, stiffness=1 / softness, loss_factor=loss, sections=sections)

@@ -10,13 +10,13 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf
 from kurbel.declared.forms.values import NumberForm, Points, order_faults, size_faults, unit_name
-from kurbel.declared.record import Record, Rule, Values, alternative, field
-from kurbel.declared.units import Factor, Point
+from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
+from kurbel.declared.units import DiagramPoint, UnitFactor
 from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.measured import Columns
 from kurbel.numerics.arithmetic import is_whole, some
 from kurbel.traces.correct import CYCLES
-from kurbel.traces.cycles import Samples, samples_of_file
+from kurbel.traces.cycles import Laps, samples_of_file
 
 CAST_IRON = 7250.0
 """Density in kg/m³ of what rims are cast of."""
@@ -59,9 +59,15 @@ class Rim(Record):
         instead="inner_diameter",
         needs="mean_diameter",
     )
-    width: float | None = field("length", "Axial width of its section, which gives its moment of inertia", "b", above=0)
+    width: float | None = field(
+        "length", "Axial width of its section, which gives its moment of inertia", "b", above=0
+    )
     mass: float | None = field(
-        "mass", "Mass of the rim, which gives its moment of inertia instead of the width", "m", above=0, instead="width"
+        "mass",
+        "Mass of the rim, which gives its moment of inertia instead of the width",
+        "m",
+        above=0,
+        instead="width",
     )
     density: float = field(
         "density",
@@ -73,11 +79,14 @@ class Rim(Record):
         also=("material",),
     )
     allowable_tension: float | None = field(
-        "stress", "Allowable hoop stress of the rim; a warning is given if it is exceeded", "k_z", above=0
+        "stress",
+        "Allowable hoop stress of the rim; a warning is given if it is exceeded",
+        "k_z",
+        above=0,
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         inner, outer = given.get("inner_diameter"), given.get("outer_diameter")
         if inner is not None and outer is not None:
             sentence = "{inner:length} leaves no rim inside of the outer diameter ({outer:length})"
@@ -85,7 +94,11 @@ class Rim(Record):
 
     def rules(self) -> Iterator[Rule]:
         beyond = self.depth > self.mean_diameter
-        yield Rule("depth", beyond, "{depth} is more than the mean diameter ({mean_diameter}), that of a disc")
+        yield Rule(
+            "depth",
+            beyond,
+            "{depth} is more than the mean diameter ({mean_diameter}), that of a disc",
+        )
         if self.sized_by:
             message = "give 'outer_diameter' and 'inner_diameter', or 'depth' with 'mean_diameter'"
             without = f"gives no moment of inertia without the depth of the rim; {message}"
@@ -165,17 +178,20 @@ class Flywheel(Record):
         "printed",
         absent="no section",
         gives=lambda given: (
-            {"rim": given["rim"]} | ({"inertia": given["rim"].inertia} if given["rim"].sized_by else {})
+            {"rim": given["rim"]}
+            | ({"inertia": given["rim"].inertia} if given["rim"].sized_by else {})
         ),
     )
     rim: Rim | None = None
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         rim = given.get("rim")
         if isinstance(rim, Rim) and rim.sized_by:
             message = "the moment of inertia is given and also follows from the sizes of the rim; give only one of them"
-            yield Rule(("rim", rim.sized_by), bool({"inertia", "gd2", "mass"} & given.keys()), message)
+            yield Rule(
+                ("rim", rim.sized_by), bool({"inertia", "gd2", "mass"} & given.keys()), message
+            )
 
     def rules(self) -> Iterator[Rule]:
         needed = "a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, or the wanted 'fluctuation'"
@@ -220,20 +236,24 @@ class Swing:
     def energy(self, turns: int) -> float | None:
         """Return ΔE in J, with the work of a cycle of so many turns, A = 2π turns M_m."""
         return (
-            self.swing if self.coefficient is None else self.coefficient * (2 * math.pi * turns) * abs(self.mean or 0.0)
+            self.swing
+            if self.coefficient is None
+            else self.coefficient * (2 * math.pi * turns) * abs(self.mean or 0.0)
         )
 
 
-Known = Effort | Harmonics | Swing
+KnownDiagram = Effort | Harmonics | Swing
 """A turning effort that is known from elsewhere."""
 
 
-def rules_of_cycle(diagram: Known | None, cycle: str, turns: int) -> Iterator[Rule]:
+def rules_of_cycle(diagram: KnownDiagram | None, cycle: str, turns: int) -> Iterator[Rule]:
     """Yield what in a diagram does not fit the cycle of the machine, of so many turns of the shaft."""
     name = f"a {cycle} cycle" if turns == CYCLES[cycle] else ""
     if isinstance(diagram, Effort):
         last, whole = diagram.angles[-1], 360.0 * turns
-        write = "cycle: four-stroke" if turns < 2 and last == 720 else f"cycle_turns: {last / 360:g}"
+        write = (
+            "cycle: four-stroke" if turns < 2 and last == 720 else f"cycle_turns: {last / 360:g}"
+        )
         ends = f"the diagram runs to {last:g} deg, {name or 'the cycle'} has {whole:g} deg; write '{write}' at the top"
         # one of a single turn repeats in the second one of a four-stroke cycle
         yield Rule("file" if diagram.files else "points", whole % last != 0, ends)
@@ -249,7 +269,10 @@ class InUnit(float):
 
 UNIT = alternative(unit_name("torque"), "Unit of the torques")
 POINTS = alternative(
-    Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M", needs="unit"
+    Points("deg", "torque"),
+    "Torque over the crank angle; two points at one angle are a jump",
+    "M",
+    needs="unit",
 )
 MEAN = alternative(
     OneOf(NumberForm("torque"), NumberForm("ratio", becomes=lambda number, _: InUnit(number))),
@@ -264,31 +287,49 @@ HARMONICS = alternative(
 )
 
 
-def harmonics_need_a_unit(given: Values) -> Rule:
+def harmonics_need_a_unit(given: ValuesByKey) -> Rule:
     """Return the rule that coefficients of harmonics have the unit of their key."""
-    return Rule("harmonics", "harmonics" in given and "unit" not in given, "'harmonics' needs 'unit' beside it")
+    return Rule(
+        "harmonics",
+        "harmonics" in given and "unit" not in given,
+        "'harmonics' needs 'unit' beside it",
+    )
 
 
-def points_of(unit: Factor, points: list[Point]) -> Effort:
+def points_of(unit: UnitFactor, points: list[DiagramPoint]) -> Effort:
     """Return the diagram of the value of `points` in a machine file; raises RuleError."""
-    refuse(*(fault.below(("points",)) for fault in _angle_faults(points) or size_faults(points, unit, "torque")))
+    refuse(
+        *(
+            fault.below(("points",))
+            for fault in _angle_faults(points) or size_faults(points, unit, "torque")
+        )
+    )
     up, down = unit
-    return Effort(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
+    return Effort(
+        tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points)
+    )
 
 
-def harmonics_of(unit: Factor, mean: float, terms: list[Point]) -> Harmonics:
+def harmonics_of(unit: UnitFactor, mean: float, terms: list[DiagramPoint]) -> Harmonics:
     """Return those of the values of `unit`, `mean` and `harmonics` in a machine file; raises RuleError."""
     for index, (order, *_) in enumerate(terms):
         if not 0 < order <= _HIGHEST:
             most = f"it must be more than 0, at most {_HIGHEST}"
-            refused(f"order {order:g} is no number of periods per turn; {most}", "harmonics", index, 0)
-    sizes = [(0.0, mean if isinstance(mean, InUnit) else 0.0), *((n, abs(c) + abs(s)) for n, c, s in terms)]
+            refused(
+                f"order {order:g} is no number of periods per turn; {most}", "harmonics", index, 0
+            )
+    sizes = [
+        (0.0, mean if isinstance(mean, InUnit) else 0.0),
+        *((n, abs(c) + abs(s)) for n, c, s in terms),
+    ]
     refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque")))
     up, down = unit
-    return Harmonics(in_unit(mean, unit), tuple((n, c * up / down, s * up / down) for n, c, s in terms))
+    return Harmonics(
+        in_unit(mean, unit), tuple((n, c * up / down, s * up / down) for n, c, s in terms)
+    )
 
 
-def in_unit(mean: float, unit: Factor) -> float:
+def in_unit(mean: float, unit: UnitFactor) -> float:
     """Return a mean torque in N m, where a bare number is in this unit."""
     return mean * unit[0] / unit[1] if isinstance(mean, InUnit) else mean
 
@@ -300,20 +341,26 @@ class Load(Record):
     mean · (1 + (ω/ω_n − 1)/s); diagram: a resistance that varies over the turn, by points or harmonics.
     """
 
-    power: float | None = field("ratio", "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k", key="power_law")
+    power: float | None = field(
+        "ratio", "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k", key="power_law"
+    )
     slip: float | None = field(
         "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
     )
     _unit = UNIT
-    _points = POINTS._replace(gives=lambda given: {"diagram": points_of(given["unit"], given["points"])})
+    _points = POINTS._replace(
+        gives=lambda given: {"diagram": points_of(given["unit"], given["points"])}
+    )
     _mean = MEAN._replace(needs="harmonics")
     _harmonics = HARMONICS._replace(
-        gives=lambda given: {"diagram": harmonics_of(given["unit"], given["mean"], given["harmonics"])}
+        gives=lambda given: {
+            "diagram": harmonics_of(given["unit"], given["mean"], given["harmonics"])
+        }
     )
     diagram: Effort | Harmonics | None = None
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         lone = "unit" in given and not {"points", "harmonics"} & given.keys()
         yield Rule("unit", lone, "'unit' needs 'points' or 'harmonics' beside it")
         yield harmonics_need_a_unit(given)
@@ -322,7 +369,9 @@ class Load(Record):
         by = "harmonics" if isinstance(self.diagram, Harmonics) else "points"
         forms = {"power_law": self.power, "slip": self.slip, by: self.diagram}
         given = [name for name, value in forms.items() if value is not None]
-        message = "give one of 'power_law', 'slip', 'points' or 'harmonics'; or write 'load: constant'"
+        message = (
+            "give one of 'power_law', 'slip', 'points' or 'harmonics'; or write 'load: constant'"
+        )
         yield Rule((), not given, message)
         both = f"{' and '.join(map(repr, given))} are different loads; keep one of them"
         yield Rule(given[-1] if given else (), len(given) > 1, both)
@@ -340,15 +389,24 @@ class KnownEffort(Columns):
     unit = UNIT
     points = POINTS._replace(text=f"{POINTS.text}; or give `file` or `harmonics`", instead="file")
     file = Columns.file._replace(
-        text="File with a column of angles in degrees and one of torques", needs="unit", example="effort.csv"
+        text="File with a column of angles in degrees and one of torques",
+        needs="unit",
+        example="effort.csv",
     )
-    torque_column = alternative(int, "Column of the torques, counted from 1", absent="2", needs="file")
+    torque_column = alternative(
+        int, "Column of the torques, counted from 1", absent="2", needs="file"
+    )
     angle_zero = alternative(
-        "angle", "Angle of the firing or inner dead centre in the file", absent="0 deg", needs="file"
+        "angle",
+        "Angle of the firing or inner dead centre in the file",
+        absent="0 deg",
+        needs="file",
     )
     mean = MEAN
     harmonics = HARMONICS
-    swing = alternative("energy", "Swing of energy, where nothing else of the effort is known", "ΔE", least=0)
+    swing = alternative(
+        "energy", "Swing of energy, where nothing else of the effort is known", "ΔE", least=0
+    )
     coefficient = alternative(
         "ratio",
         "Coefficient of fluctuation of energy: the swing over the work of a cycle, which the mean torque gives",
@@ -359,32 +417,42 @@ class KnownEffort(Columns):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        forms = [name for name in ("points", "file", "harmonics", "swing", "coefficient") if name in given]
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
+        forms = [
+            name
+            for name in ("points", "file", "harmonics", "swing", "coefficient")
+            if name in given
+        ]
         message = "give one of 'points', 'file' or 'harmonics', or 'swing', or 'coefficient' beside 'mean'"
         yield Rule((), len(forms) != 1 and forms != ["swing", "coefficient"], message)
         level = "mean" in given and forms in (["points"], ["file"])
         yield Rule(
-            "mean", level, f"belongs to harmonics, a swing or a coefficient; '{forms[0] if forms else ''}' has its own"
+            "mean",
+            level,
+            f"belongs to harmonics, a swing or a coefficient; '{forms[0] if forms else ''}' has its own",
         )
         bare = "unit" not in given and isinstance(given.get("mean"), InUnit)
-        yield Rule("mean", bare, f"{given.get('mean', 0.0):g} has no unit; write it with one, such as '500 N m'")
+        yield Rule(
+            "mean",
+            bare,
+            f"{given.get('mean', 0.0):g} has no unit; write it with one, such as '500 N m'",
+        )
         yield harmonics_need_a_unit(given)
         yield from super().rules_of_keys(given)
 
     @classmethod
     def of_keys(
         cls,
-        unit: Factor = (1.0, 1.0),
-        points: list[Point] | None = None,
+        unit: UnitFactor = (1.0, 1.0),
+        points: list[DiagramPoint] | None = None,
         file: str | None = None,
-        harmonics: list[Point] | None = None,
+        harmonics: list[DiagramPoint] | None = None,
         mean: float | None = None,
         swing: float | None = None,
         coefficient: float | None = None,
         angle_zero: float = 0.0,
         **layout: Any,
-    ) -> Known:
+    ) -> KnownDiagram:
         """Return the effort that these keys describe, its file read; raises RuleError."""
         if harmonics is not None:
             return harmonics_of(unit, mean or 0.0, harmonics)
@@ -393,27 +461,40 @@ class KnownEffort(Columns):
         if file is None:
             return points_of(unit, points or [])
         up, down = unit
-        samples = samples_of_file(file, cls.layout(layout), "torque", lambda torques: torques * up / down)
+        samples = samples_of_file(
+            file, cls.layout(layout), "torque", lambda torques: torques * up / down
+        )
         if len(samples.values) > 1:
             lap = samples.angles[-1] - samples.angles[0]
             refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")
         angles, torques = _from_zero(samples, angle_zero)
-        closed = ("the closing sample is missing; the first one closes the cycle",) if samples.completed else ()
-        return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed))
+        closed = (
+            ("the closing sample is missing; the first one closes the cycle",)
+            if samples.completed
+            else ()
+        )
+        return Effort(
+            tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed)
+        )
 
 
-def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:
+def _from_zero(samples: Laps, angle_zero: float) -> tuple[Array, Array]:
     """Return the angles (n,) in degrees from 0 to the end of the cycle, and the torques (n,), straight in between."""
     period = float(round(samples.angles[-1] - samples.angles[0]))
     begun = samples.angles - angle_zero
     begun = begun - period * np.ceil(begun[0] / period)  # begins in (−period, 0]
     angles, torques = np.concatenate([begun, begun + period]), np.tile(samples.values[0], 2)
-    first, last = np.searchsorted(angles, 0.0, side="right"), np.searchsorted(angles, period, side="left")
+    first, last = (
+        np.searchsorted(angles, 0.0, side="right"),
+        np.searchsorted(angles, period, side="left"),
+    )
     between = np.interp(0.0, angles, torques)
     at_zero = torques[first - 1] if angles[first - 1] == 0 else between
     at_end = torques[last] if angles[last] == period else between
     inside = slice(first, last)
-    return np.concatenate([[0.0], angles[inside], [period]]), np.concatenate([[at_zero], torques[inside], [at_end]])
+    return np.concatenate([[0.0], angles[inside], [period]]), np.concatenate(
+        [[at_zero], torques[inside], [at_end]]
+    )
 
 
 class Coupling(Record):
@@ -424,7 +505,7 @@ class Coupling(Record):
     damping: float = field("damping", "Torque per speed of twist", "d", default=0.0, least=0)
 
 
-def _angle_faults(points: list[Point]) -> list[Fault]:
+def _angle_faults(points: list[DiagramPoint]) -> list[Fault]:
     """Return what is wrong with the angles of a diagram over one cycle: from 0 to the end of a turn, in order."""
     for index, (angle, _) in enumerate(points):
         if not 0 <= angle <= 360 * MOST_TURNS:

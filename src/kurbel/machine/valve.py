@@ -100,7 +100,9 @@ class Eccentric(NamedTuple):
 class Link(Record):
     """Stephenson's link between the rods of two eccentrics, one for each sense of rotation."""
 
-    half_length: float = field("length", "Half the length of the link, between the pins of the rods", "c", above=0)
+    half_length: float = field(
+        "length", "Half the length of the link, between the pins of the rods", "c", above=0
+    )
     position: float = field(
         "ratio",
         "Place of the block on the link, from 0 in its middle (mid gear) to 1 (full gear)",
@@ -196,7 +198,9 @@ class ValveEnd(NamedTuple):
 
     def fractions(self, mechanism: Mechanism) -> Events:
         """Return what part of the stroke the piston is away from this end at each event."""
-        return Events(*(self._away(degrees + self.dead_centre, mechanism) for degrees in self.events))
+        return Events(
+            *(self._away(degrees + self.dead_centre, mechanism) for degrees in self.events)
+        )
 
     def _away(self, degrees: Number, mechanism: Mechanism) -> Number:
         """Return the distance of the piston from this end over the stroke, at a crank angle."""
@@ -222,7 +226,9 @@ class ValveEnd(NamedTuple):
         less = "its lap must be less than half the travel"
         yield Rule("steam_lap", S < 0, f"{self.name}: a steam lap is not negative")
         yield Rule("steam_lap", S - self.shift >= r, f"{self.name}: never opens to steam; {less}")
-        yield Rule("exhaust_lap", E + self.shift >= r, f"{self.name}: never opens to the exhaust; {less}")
+        yield Rule(
+            "exhaust_lap", E + self.shift >= r, f"{self.name}: never opens to the exhaust; {less}"
+        )
 
         # with both edges in line nothing expands, as in the engines without laps, advance and lead
         laps = S + E
@@ -249,7 +255,11 @@ class Valve(Record):
     """
 
     travel: float = field(
-        "length", "Travel of the valve; behind a `link`, of its eccentrics", "2r", above=0, example="90 mm"
+        "length",
+        "Travel of the valve; behind a `link`, of its eccentrics",
+        "2r",
+        above=0,
+        example="90 mm",
     )
     _eccentricity = alternative(
         "length",
@@ -260,7 +270,9 @@ class Valve(Record):
         gives=lambda given: {"travel": 2 * given["eccentricity"]},
     )
     steam_lap: Length = field(
-        _LENGTH, "Overlap beyond the port on the steam side, with the valve in its middle; one, or of each end", "S"
+        _LENGTH,
+        "Overlap beyond the port on the steam side, with the valve in its middle; one, or of each end",
+        "S",
     )
     exhaust_lap: Length = field(
         _LENGTH,
@@ -285,7 +297,12 @@ class Valve(Record):
         absent="follows from `lead`",
     )
     eccentric_rod: float = field(
-        "length", "Length of the eccentric rod", "l", above=0, default=math.inf, absent="infinite, as Zeuner draws it"
+        "length",
+        "Length of the eccentric rod",
+        "l",
+        above=0,
+        default=math.inf,
+        absent="infinite, as Zeuner draws it",
     )
     admission: str = field(
         ("outside", "inside"),
@@ -294,7 +311,10 @@ class Valve(Record):
         absent="outside",
     )
     reversing_rocker: bool = field(
-        bool, "Whether a rocker between eccentric and valve turns the motion round", default=False, absent="false"
+        bool,
+        "Whether a rocker between eccentric and valve turns the motion round",
+        default=False,
+        absent="false",
     )
     port_width: float = field(
         "length",
@@ -312,7 +332,9 @@ class Valve(Record):
         needs="port_width",
         absent="no speed of the steam",
     )
-    link: Link | None = field(Link, "Stephenson's link", needs="eccentric_rod", absent="one eccentric")
+    link: Link | None = field(
+        Link, "Stephenson's link", needs="eccentric_rod", absent="one eccentric"
+    )
 
     def rules(self) -> Iterator[Rule]:
         unset = self.lead is None and self.angle_of_advance is None
@@ -340,9 +362,7 @@ class Valve(Record):
         if fits:
             inner, outer = mechanism.dead_centres()
             fits = (abs(inner) < _AT_DEAD_CENTRE) & (abs(outer - 180.0) < _AT_DEAD_CENTRE)
-        message = (
-            "a valve needs dead centres at 0° and 180°: a slider-crank or yoke-frame without offset, or a scotch-yoke"
-        )
+        message = "a valve needs dead centres at 0° and 180°: a slider-crank or yoke-frame without offset, or a scotch-yoke"
         yield Rule((), np.logical_not(fits), message)
 
     @property

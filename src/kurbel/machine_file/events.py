@@ -11,16 +11,24 @@ from typing import Any, NoReturn
 
 import yaml
 
-from kurbel.declared.reading import REFUSED, Node, Plain, Reading, StopReading, Tree, shown
+from kurbel.declared.reading import (
+    REFUSED,
+    Node,
+    Plain,
+    Reading,
+    StopReading,
+    Tree,
+    text_in_one_line,
+)
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, Path, Step
-from kurbel.machine.origin import lines_of
+from kurbel.machine.origin import yaml_lines
 
 DEPTH_LIMIT = 32
 _TOO_DEEP = f"nested deeper than {DEPTH_LIMIT} levels; no machine needs that"
 _LIKE = "; a cylinder may be 'like: NAME' of another"
 _MOST_SCALARS = 3 * MOST_POINTS
-Place = tuple[int, int]
+TextPosition = tuple[int, int]
 """Line and column, both counted from 0."""
 
 
@@ -43,7 +51,7 @@ def located(text: str, faults: list[Fault]) -> list[Fault]:
     parser = Parser(text, Reading(), locating=True)
     parser.document()
 
-    def place_of(fault: Fault) -> Place:
+    def place_of(fault: Fault) -> TextPosition:
         exact = None if fault.at_key else parser.values.get(fault.path)
         parts = (fault.path[:length] for length in range(len(fault.path), -1, -1))
         return exact or next((parser.keys[part] for part in parts if part in parser.keys), (0, 0))
@@ -59,8 +67,8 @@ class Parser:
 
     def __init__(self, text: str, reading: Reading, locating: bool = False) -> None:
         self.text, self.reading, self.locating = text, reading, locating
-        self.keys: dict[Path, Place] = {}
-        self.values: dict[Path, Place] = {}
+        self.keys: dict[Path, TextPosition] = {}
+        self.values: dict[Path, TextPosition] = {}
         self._path: list[Step] = []
         self._scalars = 0
         self._events: Iterator[yaml.Event] = yaml.parse(
@@ -80,7 +88,7 @@ class Parser:
         except StopReading:
             return REFUSED
         except yaml.MarkedYAMLError as error:
-            self.reading.faults.append(explain(error, lines_of(self.text)))
+            self.reading.faults.append(explain(error, yaml_lines(self.text)))
             return REFUSED
         return Plain() if tree is None else tree
 
@@ -129,12 +137,18 @@ class Parser:
                 self._below(name, event)
             else:
                 wrong = self._guard(event)
-                wrong = self._report(event, "a key is missing before the colon") if not name else wrong
+                wrong = (
+                    self._report(event, "a key is missing before the colon") if not name else wrong
+                )
                 self._scalars += 1
             if self.locating:
                 self.keys.setdefault((*self._path, name), _place_of(event))
             self._path.append(name)
-            twice = name in found and name != "?" and self._report(event, "given twice; leave one of them out")
+            twice = (
+                name in found
+                and name != "?"
+                and self._report(event, "given twice; leave one of them out")
+            )
             self._path.pop()
             value = self._below(name, next(self._events))
             found[name] = REFUSED if twice else value
@@ -144,12 +158,17 @@ class Parser:
     def _guard(self, event: Any) -> bool:
         """Note a tag, an anchor or an alias, and return whether there is one."""
         if isinstance(event, yaml.AliasEvent):
-            return self._report(event, f"'*{shown(str(event.anchor))}' is not supported; write the value itself{_LIKE}")
+            return self._report(
+                event,
+                f"'*{text_in_one_line(str(event.anchor))}' is not supported; write the value itself{_LIKE}",
+            )
         if event.tag is not None:
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
-            return self._report(event, f"the tag '{shown(tag)}' is not supported; leave it out")
+            return self._report(
+                event, f"the tag '{text_in_one_line(tag)}' is not supported; leave it out"
+            )
         if event.anchor is not None:
-            what = f"'&{shown(event.anchor)}' is not supported; write the value wherever it is needed{_LIKE}"
+            what = f"'&{text_in_one_line(event.anchor)}' is not supported; write the value wherever it is needed{_LIKE}"
             return self._report(event, what)
         return False
 
@@ -163,7 +182,7 @@ class Parser:
         raise StopReading
 
 
-def _place_of(event: yaml.Event) -> Place:
+def _place_of(event: yaml.Event) -> TextPosition:
     assert event.start_mark
     return event.start_mark.line, event.start_mark.column
 
@@ -185,12 +204,18 @@ def explain(error: yaml.MarkedYAMLError, lines: list[str]) -> Fault:
     second, colon = "mapping values" in problem, "could not find expected ':'" in problem
     # a key without a space after its colon is in or just above these lines
     above = range(here[0], max(begin[0] - 2, -1), -1) if second or colon else ()
-    glued, key, value = next(((n, *found[0]) for n in above if (found := _GLUED.findall(lines[n]))), (-1, "", ""))
+    glued, key, value = next(
+        ((n, *found[0]) for n in above if (found := _GLUED.findall(lines[n]))), (-1, "", "")
+    )
     lone, _, rest = lines[begin[0]].strip().partition(" ")
     bracket = "]" if "sequence" in context else "}"
     no_start = "cannot start any token" in problem or "node content" in problem
     table = (
-        ("tab character" in problem or sign == "\t", here, "a tab in the indentation; indent with spaces"),
+        (
+            "tab character" in problem or sign == "\t",
+            here,
+            "a tab in the indentation; indent with spaces",
+        ),
         ("nesting depth" in problem, begin, _TOO_DEEP),
         (
             "quoted scalar" in context and "end of stream" in problem,
@@ -206,16 +231,24 @@ def explain(error: yaml.MarkedYAMLError, lines: list[str]) -> Fault:
         (
             glued >= 0,
             (glued, len(lines[glued]) - len(value)),
-            f"a space is missing after the colon; write '{shown(key)}: {shown(value.strip())}'",
+            f"a space is missing after the colon; write '{text_in_one_line(key)}: {text_in_one_line(value.strip())}'",
         ),
-        (colon and rest, begin, f"a colon is missing in this line; write '{shown(lone)}: {shown(rest.strip())}'"),
+        (
+            colon and rest,
+            begin,
+            f"a colon is missing in this line; write '{text_in_one_line(lone)}: {text_in_one_line(rest.strip())}'",
+        ),
         (colon, begin, "a colon is missing in this line; write 'key: value'"),
         (
             second and ":" in before,
             here,
             "a second colon in one line; put a text with a colon into quotation marks",
         ),
-        (second, here, "this key is indented deeper than the line above it; give both the same indentation"),
+        (
+            second,
+            here,
+            "this key is indented deeper than the line above it; give both the same indentation",
+        ),
         (
             "block mapping" in context or "block collection" in context,
             here,
@@ -227,7 +260,11 @@ def explain(error: yaml.MarkedYAMLError, lines: list[str]) -> Fault:
             "a value is missing here: close the '[' or '{' that is open, or put the text into quotation marks",
         ),
         (no_start, here, f"a value cannot begin with '{sign}'; put a text into quotation marks"),
-        ("sequence entries" in problem, here, "a list with '-' begins on a line of its own; or write it as [ …, … ]"),
+        (
+            "sequence entries" in problem,
+            here,
+            "a list with '-' begins on a line of its own; or write it as [ …, … ]",
+        ),
         (
             "escape" in problem,
             here,

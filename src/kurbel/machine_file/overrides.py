@@ -6,7 +6,16 @@ from typing import Any, NamedTuple, NoReturn
 
 import yaml
 
-from kurbel.declared.reading import REFUSED, Node, Plain, Reading, Tree, is_nothing, kind_of, shown
+from kurbel.declared.reading import (
+    REFUSED,
+    Node,
+    Plain,
+    Reading,
+    Tree,
+    is_nothing,
+    node_kind,
+    text_in_one_line,
+)
 from kurbel.errors import Fault, MachineFileError, Path, UsageError, path_text
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
@@ -36,12 +45,15 @@ def read_override(text: str, option: str = "--set") -> Override:
     >>> read_override("cylinders.0.bore=450 mm")
     Override(given='--set cylinders.0.bore=450 mm', path=('cylinders', 0, 'bore'), value='450 mm', place=())
     """
-    given = f"{option} {shown(text)}"
+    given = f"{option} {text_in_one_line(text)}"
     key, equals, value = text.partition("=")
     path = path_of(key)
     if not equals or "" in path:
         one = f"{option} bore='450 mm'"
-        _refused(given, f"write KEY=VALUE, such as {one}, of one of several cylinders cylinders.0.bore='450 mm'")
+        _refused(
+            given,
+            f"write KEY=VALUE, such as {one}, of one of several cylinders cylinders.0.bore='450 mm'",
+        )
     if any(str(step).endswith(":") for step in path):
         _refused(given, "write KEY=VALUE, without the colon")
     reading = Reading()
@@ -78,7 +90,7 @@ def path_of(key: str) -> Path:
     (('cylinders', 0, 'bore'), ('limits', 'machine.T_max'))
     """
     if found := _FIGURE.fullmatch(key):
-        steps = [one.strip() for one in found.groups() if one is not None]
+        steps = [group.strip() for group in found.groups() if group is not None]
     else:
         steps = [step.strip() for step in key.replace("[", ".").replace("]", "").split(".")]
     return tuple(int(step) if re.fullmatch(_NUMBER, step) else step for step in steps)
@@ -101,11 +113,11 @@ def set_over(tree: Node, origin: Origin) -> list[Override]:
         *_read_all(origin.overrides, "--set"),
         *_read_all(origin.varied, "--vary"),
     ]
-    for one in overrides:
+    for override in overrides:
         node: Node = tree
-        for place in range(len(one.path)):
+        for place in range(len(override.path)):
             if node is not REFUSED:
-                node = _step(node, one, place)
+                node = _step(node, override, place)
     return overrides
 
 
@@ -113,20 +125,37 @@ def _cases(tree: Tree) -> dict[str, Path]:
     """Return the paths of the load cases of a file by their names."""
     cases = tree.get("cases")
     listed = cases if isinstance(cases, list) else ()
-    return {str(one.get("name")): ("cases", index) for index, one in enumerate(listed) if isinstance(one, dict)}
+    return {
+        str(one.get("name")): ("cases", index)
+        for index, one in enumerate(listed)
+        if isinstance(one, dict)
+    }
 
 
 def _of_case(tree: Tree, name: str) -> Iterator[Override]:
     """Yield the overrides of a load case of a file; raises UsageError where there is none of this name."""
     named = _cases(tree)
     if name not in named:
-        none = "'cases' of the file is no list of cases; see kurbel check" if "cases" in tree else ""
-        there = f"there are {', '.join(map(shown, named))}" if named else none or "the file has no 'cases'"
-        raise UsageError(f"--case {shown(name)}: no such load case{did_you_mean(name, tuple(named))}; {there}")
+        none = (
+            "'cases' of the file is no list of cases; see kurbel check" if "cases" in tree else ""
+        )
+        there = (
+            f"there are {', '.join(map(text_in_one_line, named))}"
+            if named
+            else none or "the file has no 'cases'"
+        )
+        raise UsageError(
+            f"--case {text_in_one_line(name)}: no such load case{did_you_mean(name, tuple(named))}; {there}"
+        )
     place: Path = (*named[name], "set")
     values = value_at(tree, place)
     for key, value in values.items() if isinstance(values, dict) else ():
-        yield Override(f"case {shown(name)}: {shown(key)}", path_of(key), value, (*place, key))
+        yield Override(
+            f"case {text_in_one_line(name)}: {text_in_one_line(key)}",
+            path_of(key),
+            value,
+            (*place, key),
+        )
 
 
 def value_at(tree: Any, path: Path) -> Node | None:
@@ -148,12 +177,15 @@ def _step(node: Node, one: Override, place: int) -> Node:
             names = [item.get("name") if isinstance(item, dict) else None for item in node]
             meant = names.index(step) if step in names else len(node) - 1
             instead = dotted((*one.path[:place], meant, *one.path[place + 1 :]))
-            _refused(one.given, f"'{above}' is a list; its items are 0 to {len(node) - 1}: write {instead}=…")
+            _refused(
+                one.given,
+                f"'{above}' is a list; its items are 0 to {len(node) - 1}: write {instead}=…",
+            )
         if last:
             node[step] = one.value
         return node[step]
     if not isinstance(node, dict):
-        _refused(one.given, f"there is nothing below '{above}', which is {kind_of(node)}")
+        _refused(one.given, f"there is nothing below '{above}', which is {node_kind(node)}")
     if last:
         node[str(step)] = one.value
     elif is_nothing(node.get(str(step), Plain())):
@@ -173,7 +205,7 @@ def named(fault: Fault, overrides: Sequence[Override]) -> Fault:
                 if one.place
                 else fault._replace(override=one.given)
             )
-    listed = f" (with {', '.join(one.given for one in overrides)})" if overrides else ""
+    listed = f" (with {', '.join(override.given for override in overrides)})" if overrides else ""
     return fault._replace(message=fault.message + listed)
 
 
@@ -213,7 +245,9 @@ def text_at(tree: Tree, key: str) -> str:
     text = value_at(tree, path_of(key))
     if isinstance(text, str):
         return text
-    paths = [path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty"]
+    paths = [
+        path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty"
+    ]
     meant = did_you_mean(key, tuple(map(dotted, paths)))
     for path in reversed(paths):
         names = ".".join(step for step in path if isinstance(step, str))
@@ -229,7 +263,7 @@ def texts_at(origin: Origin, keys: Sequence[str]) -> list[str]:
         try:
             texts.append(text_at(tree, key))
         except UsageError as error:
-            raise UsageError(f"{shown(key)}: {error}") from None
+            raise UsageError(f"{text_in_one_line(key)}: {error}") from None
     return texts
 
 
@@ -280,7 +314,9 @@ def _edit(text: str, path: Path, value: str) -> tuple[int, int, str]:
             node = node.value[step]
             continue
         if not isinstance(node, yaml.MappingNode):
-            raise UsageError(f"--write: '{dotted(path)}' is not written out in the file; write it there first")
+            raise UsageError(
+                f"--write: '{dotted(path)}' is not written out in the file; write it there first"
+            )
         inner = next((value for key, value in node.value if key.value == str(step)), None)
         if inner is not None:
             node = inner

@@ -6,9 +6,18 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from kurbel.declared.forms.structures import Given, Maker, RecordForm, places
+from kurbel.declared.forms.structures import Maker, ReadMapping, RecordForm, key_places
 from kurbel.declared.numerals import WRITTEN, familiar
-from kurbel.declared.reading import REFUSED, Node, Plain, Reading, StopReading, glued_hint, kind_of, shown
+from kurbel.declared.reading import (
+    REFUSED,
+    Node,
+    Plain,
+    Reading,
+    StopReading,
+    glued_hint,
+    node_kind,
+    text_in_one_line,
+)
 from kurbel.declared.units import ZEROED_UNITS
 from kurbel.errors import Fault, MachineFileError, Path, UsageError
 from kurbel.machine import Machine
@@ -43,7 +52,9 @@ def load_cases(origin: Origin, names: Iterable[str]) -> list[Machine]:
         except MachineFileError as error:
             faults += error.faults
     if faults:
-        raise MachineFileError(origin.name, sorted(dict.fromkeys(faults), key=lambda one: (one.line, one.column)))
+        raise MachineFileError(
+            origin.name, sorted(dict.fromkeys(faults), key=lambda one: (one.line, one.column))
+        )
     return machines
 
 
@@ -56,7 +67,9 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
     0.8
     """
     # half of a surrogate pair is no text: let the decoder say so
-    return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")).set_over(overrides))
+    return read_machine(
+        source.decode(name, text.encode("utf-8", "surrogatepass")).set_over(overrides)
+    )
 
 
 def machine_of(given: object) -> Machine:
@@ -70,7 +83,9 @@ def machine_of(given: object) -> Machine:
         return loads(given)
     if isinstance(given, (str, os.PathLike)):
         return load(given)
-    raise UsageError(f"a machine is expected, or the path or text of a machine file, not {shown(repr(given))}")
+    raise UsageError(
+        f"a machine is expected, or the path or text of a machine file, not {text_in_one_line(repr(given))}"
+    )
 
 
 def key_values() -> Mapping[str, Quantity]:
@@ -80,7 +95,7 @@ def key_values() -> Mapping[str, Quantity]:
 
 def reading_of(origin: Origin) -> Reading:
     """Return a new pass over a file."""
-    return Reading(origin.folder, lambda: places(ROOT), key_values)
+    return Reading(origin.folder, lambda: key_places(ROOT), key_values)
 
 
 def read_machine(origin: Origin) -> Machine:
@@ -90,7 +105,7 @@ def read_machine(origin: Origin) -> Machine:
     return replace(machine, name=name, origin=origin)
 
 
-def read_values(origin: Origin, reading: Reading) -> Given:
+def read_values(origin: Origin, reading: Reading) -> ReadMapping:
     """Return the result of both passes over a file; errors: see `load`; reading: see `reading_of`."""
     tree = parse(origin.text, reading)
     known = len(reading.faults)  # those of YAML, which have their places
@@ -103,14 +118,19 @@ def read_values(origin: Origin, reading: Reading) -> Given:
         elif isinstance(tree, Plain) and not tree:
             reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
         elif tree is not REFUSED:
-            reading.fault((), f"expected lines such as 'crank: 400 mm', got {kind_of(tree)}{glued_hint(tree)}")
+            reading.fault(
+                (),
+                f"expected lines such as 'crank: 400 mm', got {node_kind(tree)}{glued_hint(tree)}",
+            )
     except StopReading:
         pass
     if reading.faults:
         found = [named(fault, overrides) for fault in reading.faults[known:]]
         in_file = located(origin.text, [one for one in found if not one.override])
-        raise origin.error(*reading.faults[:known], *(one for one in found if one.override), *in_file)
-    assert isinstance(given, Given)
+        raise origin.error(
+            *reading.faults[:known], *(one for one in found if one.override), *in_file
+        )
+    assert isinstance(given, ReadMapping)
     return given
 
 
@@ -135,9 +155,15 @@ def _without_zeros(tree: Node, reading: Reading, path: Path = (), counted: str =
         if path[-1:] == ("indicator",):
             counted = "absolute" if tree.get("pressures") == "absolute" else "gauge"
         zeros = {key: _COUNTED.get(key, counted) for key in tree}
-        return {key: _without_zeros(one, reading, (*path, key), zeros[key]) for key, one in tree.items()}
-    if isinstance(tree, list) and not (tree and isinstance(tree[0], list)):  # points are of bare numbers
-        return [_without_zeros(one, reading, (*path, index), counted) for index, one in enumerate(tree)]
+        return {
+            key: _without_zeros(one, reading, (*path, key), zeros[key]) for key, one in tree.items()
+        }
+    if isinstance(tree, list) and not (
+        tree and isinstance(tree[0], list)
+    ):  # points are of bare numbers
+        return [
+            _without_zeros(one, reading, (*path, index), counted) for index, one in enumerate(tree)
+        ]
     found = _ZEROED.fullmatch(familiar(tree).strip()) if isinstance(tree, str) else None
     if not found or (path[-1] != "unit" and not found[1].strip()):
         return tree

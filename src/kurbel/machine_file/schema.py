@@ -46,7 +46,9 @@ def _of(form: Form, definitions: Schema) -> Schema:
         return _reference(name)
     if isinstance(form, Listing):
         item = _of(form.item, definitions)
-        if form.called and isinstance(form.item, RecordForm):  # one that is like another need not say everything
+        if form.called and isinstance(
+            form.item, RecordForm
+        ):  # one that is like another need not say everything
             short = _mapping(definitions[form.item.record.__name__]["properties"])
             item = {"if": {"required": ["like"]}, "then": short, "else": item}
         return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_ITEMS}
@@ -63,7 +65,10 @@ def _of(form: Form, definitions: Schema) -> Schema:
         name = f"figure_{form.size.kind}"
         two = {"type": "array", "items": _of(form.size, definitions), "minItems": 2, "maxItems": 2}
         definitions[name] = {
-            "anyOf": [{"type": "string", "pattern": r"^[^±]*[0-9][^±]*(±|\+\s*/?\s*-)\s*[0-9.][^±]*$"}, two],
+            "anyOf": [
+                {"type": "string", "pattern": r"^[^±]*[0-9][^±]*(±|\+\s*/?\s*-)\s*[0-9.][^±]*$"},
+                two,
+            ],
             "errorMessage": f"write {form.expected}",
             "examples": [form.example, form.absolute],
         }
@@ -83,7 +88,9 @@ def _reference(name: str) -> Schema:
 def _of_number(form: NumberForm, definitions: Schema) -> Schema:
     """Return the schema of a number with its unit, of a bare one within its bounds, or of a whole one."""
     if form.whole:
-        return {"type": "integer", "minimum": form.least} | ({} if form.most is None else {"maximum": form.most})
+        return {"type": "integer", "minimum": form.least} | (
+            {} if form.most is None else {"maximum": form.most}
+        )
     if form.kind == "ratio":
         largest = KINDS["ratio"].largest
         bounds = {
@@ -114,7 +121,11 @@ def _unit_pattern(kind: str) -> str:
     """Return a pattern of the units of a kind in every spelling that is read: `kgf m2` is also `kgf·m²`, `kgf*m^2`."""
     patterns = []
     for unit in unit_names(kind):
-        letters = re.escape(re.sub(r"(?<=[a-z])2", "²", unit)).replace("\\ ", "[ ·*]+").replace("/", "\\s*/\\s*")
+        letters = (
+            re.escape(re.sub(r"(?<=[a-z])2", "²", unit))
+            .replace("\\ ", "[ ·*]+")
+            .replace("/", "\\s*/\\s*")
+        )
         letters = re.sub("(?<=m|n)(?=Hg|H2O)", " ?", re.sub("^u(?=m)", "[uµμ]", letters))
         patterns.append(letters.replace("²", "(?:\\^?2|²)"))
     return f"(?:{'|'.join(patterns)})"
@@ -123,7 +134,9 @@ def _unit_pattern(kind: str) -> str:
 def _of_figures(form: Figures, known: Mapping[str, Quantity], definitions: Schema) -> Schema:
     """Return the schema of a mapping from these key values, by id."""
     # a symbol of several, or of one and the id of another, names none
-    named = Counter(name for one in known.values() for name in {one.id, one.symbol, one.ascii_symbol})
+    named = Counter(
+        name for one in known.values() for name in {one.id, one.symbol, one.ascii_symbol}
+    )
     properties: Schema = {}
     names: dict[str, list[str]] = {}  # of those of one schema, which have one pattern below a scope
     schemas: dict[str, Schema] = {}
@@ -133,7 +146,9 @@ def _of_figures(form: Figures, known: Mapping[str, Quantity], definitions: Schem
                 schema = _of(form.figure_of(quantity), definitions)
                 properties[name] = {**schema, "description": quantity.text}
                 schemas[repr(schema)] = schema
-                names.setdefault(repr(schema), []).append(re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name))
+                names.setdefault(repr(schema), []).append(
+                    re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name)
+                )
     patterns = {f"^.+\\.({'|'.join(names[text])})$": schema for text, schema in schemas.items()}
     return {**_mapping(properties), "patternProperties": patterns}
 
@@ -146,7 +161,9 @@ def _of_mapping(form: RecordForm, definitions: Schema) -> Schema:
     return _mapping(properties) | _demands(form) | ({"allOf": rules} if rules else {})
 
 
-def describe(record: RecordForm, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
+def describe(
+    record: RecordForm, properties: Schema, rules: list[Schema], definitions: Schema
+) -> None:
     """Add all keys to the schema of a mapping, those of inline records after its own."""
     for name, key in sorted(record.keys.items(), key=lambda item: isinstance(item[1].form, Inline)):
         form = key.form
@@ -155,7 +172,9 @@ def describe(record: RecordForm, properties: Schema, rules: list[Schema], defini
             describe(form, properties, rules, definitions)
             added = [[inner] for inner in properties if inner not in before]
             if demands := _demands(form):
-                rules.append({"if": {"anyOf": [{"required": group} for group in added]}, "then": demands})
+                rules.append(
+                    {"if": {"anyOf": [{"required": group} for group in added]}, "then": demands}
+                )
             if form.unless:
                 rules.append({"if": {"required": [form.unless]}, "then": _none_of(added)})
             continue
@@ -174,7 +193,9 @@ def describe(record: RecordForm, properties: Schema, rules: list[Schema], defini
                 chosen["required"] = [name]
             others = dict.fromkeys(inner for one in form.cases.values() for inner in one.keys)
             foreign = [[inner] for inner in others if inner not in case.keys]
-            rules.append({"if": chosen, "then": (_none_of(foreign) if foreign else {}) | _demands(case)})
+            rules.append(
+                {"if": chosen, "then": (_none_of(foreign) if foreign else {}) | _demands(case)}
+            )
 
 
 def _demands(form: RecordForm) -> Schema:

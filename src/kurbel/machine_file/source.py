@@ -6,7 +6,7 @@ import sys
 
 from kurbel.declared.numerals import SPACES
 from kurbel.errors import Fault, MachineFileError, UnreadableFileError
-from kurbel.machine.origin import Origin, lines_of
+from kurbel.machine.origin import Origin, yaml_lines
 from kurbel.shipped import shipped
 
 SIZE_LIMIT = 16 * 1024 * 1024
@@ -31,8 +31,17 @@ def read(path: str | os.PathLike[str]) -> Origin:
             return decode(name, file.read(SIZE_LIMIT + 1), os.path.dirname(name))
     except FileNotFoundError:
         writes = f"'kurbel example {name} > {name}.yaml' writes the shipped machine of this name"
-        named = next((f"{name}{end}" for end in (".yaml", ".yml") if name and os.path.isfile(f"{name}{end}")), "")
-        other = f"did you mean '{named}'?" if named else "'kurbel example' lists machines to start from"
+        named = next(
+            (
+                f"{name}{end}"
+                for end in (".yaml", ".yml")
+                if name and os.path.isfile(f"{name}{end}")
+            ),
+            "",
+        )
+        other = (
+            f"did you mean '{named}'?" if named else "'kurbel example' lists machines to start from"
+        )
         hint = writes if name in shipped() else other
         what = f"{name or 'the empty name'}: there is no such file; {hint}"
     except IsADirectoryError:
@@ -61,7 +70,9 @@ def decode(name: str, content: bytes, folder: str = "") -> Origin:
     except UnicodeDecodeError as error:
         before = content[: error.start].decode("utf-8-sig")
         message = f"byte 0x{content[error.start]:02X} is no UTF-8; save the file as UTF-8"
-        raise _refused(name, before + content[error.start :].decode("latin-1"), len(before), message) from None
+        raise _refused(
+            name, before + content[error.start :].decode("latin-1"), len(before), message
+        ) from None
     if found := _UNPRINTABLE.search(text):
         message = f"the character U+{ord(found.group()):04X} cannot be printed; remove it"
         raise _refused(name, text, found.start(), message)
@@ -70,5 +81,5 @@ def decode(name: str, content: bytes, folder: str = "") -> Origin:
 
 def _refused(name: str, text: str, index: int, message: str) -> MachineFileError:
     """Return what is wrong with the character at an index of a text."""
-    lines = lines_of(text[:index])
+    lines = yaml_lines(text[:index])
     return Origin(name, text).error(Fault((), message).at(len(lines) - 1, len(lines[-1])))

@@ -15,12 +15,12 @@ import numpy as np
 
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
-from kurbel.declared.record import Entry, Record, field
+from kurbel.declared.record import FieldValue, Record, field
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.search import bracketed_roots
-from kurbel.quantity import Condition, Formula, Quantity
+from kurbel.quantity import Formula, Quantity, ResultCondition
 
-Factor = Callable[[Any, CrankAngle], Any]
+ColumnFactor = Callable[[Any, CrankAngle], Any]
 """Takes a mechanism and a crank angle, and returns what the formula of a column has besides ω and a force."""
 
 
@@ -35,37 +35,58 @@ class Offer:
     """
 
     quantity: Quantity
-    factor: Factor
+    factor: ColumnFactor
     omega: int = 0
     force: Formula | None = None
-    unless: Condition | None = None
+    unless: ResultCondition | None = None
 
     def of(self, state: Any) -> Array | None:
         """Return the column of the state of a cylinder at crank angles (n,) in SI; None where it is not known."""
         factors = [self.factor(state.mechanism, state.posed), *[state.omega] * self.omega]
         if self.force:
             factors.append(self.force(state))
-        return None if any(one is None for one in factors) else math.prod(factors)
+        return None if any(factor is None for factor in factors) else math.prod(factors)
 
 
-def motion_column(id: str, symbol: str, kind: str, text: str, factor: Factor, omega: int = 0) -> Offer:
+def motion_column(
+    id: str, symbol: str, kind: str, text: str, factor: ColumnFactor, omega: int = 0
+) -> Offer:
     """Return a column that a mechanism adds to `kurbel motion`."""
     return Offer(Quantity(id, symbol, kind, text, commands=("motion",), after="b"), factor, omega)
 
 
-def force_column(id: str, symbol: str, kind: str, text: str, factor: Factor, force: Formula, after: str = "N") -> Offer:
+def force_column(
+    id: str,
+    symbol: str,
+    kind: str,
+    text: str,
+    factor: ColumnFactor,
+    force: Formula,
+    after: str = "N",
+) -> Offer:
     """Return a column that a mechanism adds to `kurbel forces`, with extremes, called as the sentence begins."""
     called = text[0].lower() + text[1:].partition(",")[0]
     forces = ("forces",)
-    return Offer(Quantity(id, symbol, kind, text, "", forces, forces, called, after), factor, force=force)
+    return Offer(
+        Quantity(id, symbol, kind, text, "", forces, forces, called, after), factor, force=force
+    )
 
 
 def requested_column(
-    id: str, symbol: str, kind: str, text: str, factor: Factor, after: str, omega: int = 0, plain: str = ""
+    id: str,
+    symbol: str,
+    kind: str,
+    text: str,
+    factor: ColumnFactor,
+    after: str,
+    omega: int = 0,
+    plain: str = "",
 ) -> Offer:
     """Return a column that a mechanism adds to both, printed on request."""
     both = ("motion", "forces")
-    return Offer(Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both), factor, omega)
+    return Offer(
+        Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both), factor, omega
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +126,7 @@ class PointMotion(NamedTuple):
     acceleration: Number
 
 
-Point = tuple[Any, Any]
+Position = tuple[Any, Any]
 """Place in m from the shaft, along φ = 0 and along φ = 90°; each a number, or shaped as the angle."""
 SHAFT, PIN = "shaft", "pin"
 
@@ -120,18 +141,23 @@ class Sketch:
     that in which the output presses on its guide where N is positive; of what only swings, None.
     """
 
-    joints: dict[str, Point]
+    joints: dict[str, Position]
     links: tuple[tuple[str, ...], ...]
     fixed: tuple[str, ...]
     blocks: tuple[tuple[str, tuple[str, str]], ...] = ()
-    guides: tuple[tuple[Point, Point], ...] = ()
+    guides: tuple[tuple[Position, Position], ...] = ()
     output: str = ""
-    toward: Point | None = None
-    across: Point | None = None
+    toward: Position | None = None
+    across: Position | None = None
 
     @classmethod
     def of_crank(
-        cls, radius: float, angle: CrankAngle, joints: dict[str, Point], *links: tuple[str, ...], **more: Any
+        cls,
+        radius: float,
+        angle: CrankAngle,
+        joints: dict[str, Position],
+        *links: tuple[str, ...],
+        **more: Any,
     ) -> "Sketch":
         """Return the sketch of a crank with what else is given; fixed: joints on the frame besides the shaft."""
         pin = on_circle(radius, angle.cos, angle.sin)
@@ -279,7 +305,9 @@ class Mechanism(Record, ABC):
         pin = R * (angle.cos + 1j * angle.sin)
         arm = (along + 1j * across) * unit_vector(coupler.degrees)
         place, acceleration = pin + arm, arm * (1j * coupler.curvature - coupler.slope**2) - pin
-        return PointMotion(place.real, place.imag, abs(pin + arm * coupler.slope), abs(acceleration))
+        return PointMotion(
+            place.real, place.imag, abs(pin + arm * coupler.slope), abs(acceleration)
+        )
 
     def sketch(self, angle: CrankAngle) -> Sketch | None:
         """Return what is drawn of the mechanism at the crank angle, or None where that cannot be drawn."""
@@ -295,7 +323,7 @@ class Mechanism(Record, ABC):
         return None
 
 
-def on_circle(radius: Number, cos: Number, sin: Number, centre: Point = (0.0, 0.0)) -> Point:
+def on_circle(radius: Number, cos: Number, sin: Number, centre: Position = (0.0, 0.0)) -> Position:
     """Return the point of a circle in a direction."""
     return centre[0] + radius * cos, centre[1] + radius * sin
 
@@ -315,7 +343,9 @@ def _swing(order: int) -> Offer:
     end, mark, kind, name = TURNING[order]
     searched, called = (("motion",), f"{name.lower()} of the swing") if order else ((), "")
     text = f"{name} of the swinging member"
-    quantity = Quantity(f"theta{end}", f"θ{mark}", kind, text, "", _BOTH, searched, called, after="b")
+    quantity = Quantity(
+        f"theta{end}", f"θ{mark}", kind, text, "", _BOTH, searched, called, after="b"
+    )
     return Offer(
         quantity,
         lambda one, angle: one.swing_at(angle)[order],
@@ -332,20 +362,47 @@ SWING_OFFERS = (_swing(0), _swing(1), _swing(2))
 def _ends(mechanism: Any) -> list[Extreme]:
     """θ in degrees at the dead centres; where the member turns fully, none."""
     centres = mechanism.dead_centres() if mechanism.swing is not None else ()
-    return [Extreme(float(mechanism.swing_at(CrankAngle.of(end)).degrees), end % 360.0) for end in centres]
+    return [
+        Extreme(float(mechanism.swing_at(CrankAngle.of(end)).degrees), end % 360.0)
+        for end in centres
+    ]
 
 
 SWING_VALUES = (
     KeyOffer(
-        Quantity("swing", "θ_s", "angle", "Angle through which the member swings", "", _BOTH, after="stroke"),
+        Quantity(
+            "swing",
+            "θ_s",
+            "angle",
+            "Angle through which the member swings",
+            "",
+            _BOTH,
+            after="stroke",
+        ),
         lambda one, _: one.swing,
     ),
     KeyOffer(
-        Quantity("theta_min", "θ_min", "angle", "Smallest angle of the swinging member", "", _BOTH, after="stroke"),
+        Quantity(
+            "theta_min",
+            "θ_min",
+            "angle",
+            "Smallest angle of the swinging member",
+            "",
+            _BOTH,
+            after="stroke",
+        ),
         lambda one, _: min(_ends(one), default=None),
     ),
     KeyOffer(
-        Quantity("theta_max", "θ_max", "angle", "Largest angle of the swinging member", "", _BOTH, after="stroke"),
+        Quantity(
+            "theta_max",
+            "θ_max",
+            "angle",
+            "Largest angle of the swinging member",
+            "",
+            _BOTH,
+            after="stroke",
+        ),
         lambda one, _: max(_ends(one), default=None),
     ),
 )
@@ -363,13 +420,13 @@ F_COUPLER = force_column(
 """Of a mechanism with `coupler_force_factor`, the force in 1/m over the moment on the swinging member."""
 
 
-def pin_diameter() -> Entry:
+def pin_diameter() -> FieldValue:
     """Return the field of the diameter of the crank pin."""
     text = "Diameter of the crank pin; needs `pin_length`"
     return field("length", text, "d_z", above=0, absent="no pin pressure", needs="pin_length")
 
 
-def pin_length() -> Entry:
+def pin_length() -> FieldValue:
     """Return the field of the length of the crank pin."""
     text = "Length of the crank pin in its block; needs `pin_diameter`"
     return field("length", text, "l_z", above=0, absent="no pin pressure", needs="pin_diameter")
@@ -407,7 +464,13 @@ def pin_pressure(bound: float | None = None) -> KeyOffer:
         found = None if mechanism.pin_diameter is None else forces.extremes_of("F_pin")
         if not found:
             return None
-        return Extreme(found.peak.value / (mechanism.pin_diameter * mechanism.pin_length), found.peak.degrees)
+        return Extreme(
+            found.peak.value / (mechanism.pin_diameter * mechanism.pin_length), found.peak.degrees
+        )
 
     text = "Largest pressure of the sliding block on the crank pin"
-    return KeyOffer(Quantity("pin_pressure", "p_z", "pressure", text, "", ("forces",), after="T_min"), largest, bound)
+    return KeyOffer(
+        Quantity("pin_pressure", "p_z", "pressure", text, "", ("forces",), after="T_min"),
+        largest,
+        bound,
+    )

@@ -30,7 +30,9 @@ from kurbel.quantity import Quantity
 def _coupler(order: int) -> Offer:
     end, mark, kind, name = TURNING[order]
     text = (
-        f"{name}, from the line crank pivot → rocker pivot, of the coupler" if not order else f"{name} of the coupler"
+        f"{name}, from the line crank pivot → rocker pivot, of the coupler"
+        if not order
+        else f"{name} of the coupler"
     )
     return requested_column(
         f"theta_coupler{end}",
@@ -46,7 +48,9 @@ def _coupler(order: int) -> Offer:
 
 def _transmission(end: str, size: str, degrees: float) -> KeyOffer:
     text, after = f"{size} transmission angle", "theta_ddot_min"
-    quantity = Quantity(f"transmission_{end}", f"μ_{end}", "angle", text, "", ("motion", "forces"), after=after)
+    quantity = Quantity(
+        f"transmission_{end}", f"μ_{end}", "angle", text, "", ("motion", "forces"), after=after
+    )
     return KeyOffer(quantity, lambda four_bar, _: four_bar.transmission(degrees))
 
 
@@ -91,15 +95,25 @@ class FourBar(Mechanism):
 
     def rules(self) -> Iterator[Rule]:
         # among equals the crank comes first
-        links = {"crank": self.crank, "frame": self.frame, "coupler": self.coupler, "rocker": self.rocker}
+        links = {
+            "crank": self.crank,
+            "frame": self.frame,
+            "coupler": self.coupler,
+            "rocker": self.rocker,
+        }
         shortest, *others, longest = sorted(links, key=links.__getitem__)
         gap = math.fsum((*(links[name] for name in others), -links[shortest], -links[longest]))
         # lengths that were written in decimals meet a change point only within their rounding
         flat = gap <= 2 * math.ulp(links[longest])
-        numbers = links | {"ends": links[shortest] + links[longest], "pair": sum(links[name] for name in others)}
+        numbers = links | {
+            "ends": links[shortest] + links[longest],
+            "pair": sum(links[name] for name in others),
+        }
         longer = f"{{crank}} is longer than the {shortest} ({{{shortest}}}), and so is the frame ({{frame}}): "
         longer += "the crank turns fully only where it or the frame is the shortest link"
-        yield Rule("crank", shortest not in ("crank", "frame") and gap == gap, longer)  # of an unread length gap is nan
+        yield Rule(
+            "crank", shortest not in ("crank", "frame") and gap == gap, longer
+        )  # of an unread length gap is nan
         sums = f"{shortest} + {longest}, {{ends:length}}, must be less than {' + '.join(others)}, {{pair:length}}"
         grashof = f"it cannot turn fully: {sums} (Grashof; where they are equal, it folds flat: a change point)"
         yield Rule("crank", flat and shortest in ("crank", "frame"), grashof, numbers)
@@ -144,7 +158,11 @@ class FourBar(Mechanism):
         p = sqrt(w)
         lift = 2 * a * angle.versine / (p + abs(span))  # p − |1 − a|
         drop = 2 * a * angle.vercosine / (1 + a + p)  # 1 + a − p
-        H = sqrt((flat + drop) * (b + c + p)) * sqrt((near_coupler + lift) * (near_rocker + lift)) / 2
+        H = (
+            sqrt((flat + drop) * (b + c + p))
+            * sqrt((near_coupler + lift) * (near_rocker + lift))
+            / 2
+        )
         across, along, foot = a * angle.sin, span + a * angle.versine, (w - unlike) / 2
         sin, cos = (foot * across + H * along) / (w * c), (H * across - foot * along) / (w * c)
         E, G, rise, bend = w + unlike, b * b + c * c - w, 2 * across, 2 * a * angle.cos
@@ -172,7 +190,9 @@ class FourBar(Mechanism):
             return Turning(bearing(loop.sin, loop.cos), loop.slope, loop.curvature)
         # the diagonal runs ahead of the crank, and the rocker behind it
         ahead = bearing(angle.sin, angle.versine + (self.crank - self.frame) / self.frame)
-        return Turning(angle.degrees + ahead - bearing(loop.H, loop.foot), loop.slope, loop.curvature)
+        return Turning(
+            angle.degrees + ahead - bearing(loop.H, loop.foot), loop.slope, loop.curvature
+        )
 
     def coupler_at(self, angle: CrankAngle) -> Turning:
         """Return how the coupler turns, by the velocities and accelerations of its ends.
@@ -200,7 +220,9 @@ class FourBar(Mechanism):
     def transmission(self, degrees: float) -> Extreme:
         """Return the transmission angle μ between coupler and rocker, smallest at 0° and largest at 180°."""
         loop, c = self.closed_at(CrankAngle.of(degrees)), self.rocker / self.frame
-        return Extreme(float(bearing(loop.H, c * c - loop.foot)), degrees)  # b c sin μ and b c cos μ
+        return Extreme(
+            float(bearing(loop.H, c * c - loop.foot)), degrees
+        )  # b c sin μ and b c cos μ
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return crank, coupler and rocker."""
@@ -209,7 +231,9 @@ class FourBar(Mechanism):
         links = (PIN, "rocker pin"), ("rocker pin", "pivot")
         return Sketch.of_crank(self.crank, angle, joints, *links, fixed=("pivot",))
 
-    lacks = (("inertia of coupler and rocker", "kurbel has no masses on a mechanism that only swings"),)
+    lacks = (
+        ("inertia of coupler and rocker", "kurbel has no masses on a mechanism that only swings"),
+    )
 
     def dead_centres(self) -> tuple[float, float]:
         """Return the crank angles of smallest and of largest θ: crank and coupler in line, stretched and folded.
@@ -229,7 +253,9 @@ class FourBar(Mechanism):
     @cached_property
     def limits(self) -> tuple[float, float]:
         """Smallest and largest θ in degrees, those of the dead centres."""
-        inner, outer = (float(self.swing_at(CrankAngle.of(end)).degrees) for end in self.dead_centres())
+        inner, outer = (
+            float(self.swing_at(CrankAngle.of(end)).degrees) for end in self.dead_centres()
+        )
         return inner, outer
 
     @property
@@ -262,4 +288,6 @@ class FourBar(Mechanism):
     @property
     def notes(self) -> tuple[str, ...]:
         """Say that the rocker turns fully, where it does."""
-        return ("The frame is the shortest link: the rocker turns fully with the crank (drag link).",) * self.turns
+        return (
+            "The frame is the shortest link: the rocker turns fully with the crank (drag link).",
+        ) * self.turns

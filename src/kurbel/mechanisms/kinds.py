@@ -8,6 +8,13 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank, YokeFrame
 from kurbel.mechanisms.slotted_lever import SlottedLever
 
-KINDS: tuple[type[Mechanism], ...] = (SliderCrank, ScotchYoke, SlottedLever, FourBar, ParallelCrank, YokeFrame)
-MECHANISMS = {one.name: RecordForm(one) for one in KINDS}
+KINDS: tuple[type[Mechanism], ...] = (
+    SliderCrank,
+    ScotchYoke,
+    SlottedLever,
+    FourBar,
+    ParallelCrank,
+    YokeFrame,
+)
+MECHANISMS = {kind.name: RecordForm(kind) for kind in KINDS}
 """Word in the machine file -> what reads its keys."""

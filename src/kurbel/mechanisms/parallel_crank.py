@@ -64,7 +64,11 @@ def _acceleration(one: Any, results: Any) -> float | None:
 def _inertia(one: Any, results: Any) -> float | None:
     """Return m R ω² in N; None without a speed or the mass of the coupler."""
     acceleration = _acceleration(one, results)
-    return None if acceleration is None or one.coupler_mass is None else one.coupler_mass * acceleration
+    return (
+        None
+        if acceleration is None or one.coupler_mass is None
+        else one.coupler_mass * acceleration
+    )
 
 
 COUPLER_VALUES = (
@@ -82,7 +86,13 @@ COUPLER_VALUES = (
     ),
     KeyOffer(
         Quantity(
-            "coupler_inertia", "F_b", "force", "Centrifugal force m v²/R of the coupler", "", ("forces",), after="T_min"
+            "coupler_inertia",
+            "F_b",
+            "force",
+            "Centrifugal force m v²/R of the coupler",
+            "",
+            ("forces",),
+            after="T_min",
         ),
         _inertia,
     ),
@@ -99,7 +109,9 @@ class ParallelCrank(Mechanism):
 
     crank: float = field("length", "Radius of both cranks", "R", above=0)
     frame: float = field("length", "Distance of the shafts; the coupler is as long", "d", above=0)
-    coupler_mass: float | None = field("mass", "Mass of the coupler", "m", least=0, absent="no inertia of the coupler")
+    coupler_mass: float | None = field(
+        "mass", "Mass of the coupler", "m", least=0, absent="no inertia of the coupler"
+    )
 
     name = "parallel-crank"
     slides = False
@@ -136,7 +148,10 @@ class ParallelCrank(Mechanism):
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return both cranks and the coupler."""
         second = self.frame, 0.0
-        joints = {"second": second, "second pin": on_circle(self.crank, angle.cos, angle.sin, second)}
+        joints = {
+            "second": second,
+            "second pin": on_circle(self.crank, angle.cos, angle.sin, second),
+        }
         links = (PIN, "second pin"), ("second pin", "second")
         return Sketch.of_crank(self.crank, angle, joints, *links, fixed=("second",))
 
@@ -151,4 +166,8 @@ class ParallelCrank(Mechanism):
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
         """Name the inertia of the coupler, where its mass is not given."""
-        return () if self.coupler_mass is not None else (("inertia of the coupler", "no coupler_mass given"),)
+        return (
+            ()
+            if self.coupler_mass is not None
+            else (("inertia of the coupler", "no coupler_mass given"),)
+        )

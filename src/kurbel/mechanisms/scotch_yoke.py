@@ -98,10 +98,16 @@ class ScotchYoke(Mechanism):
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
         """Name the guides and the pin, where their sizes are not given."""
-        guides = () if self.guide_length is not None else (("force on the guides", "no guide_length given"),)
+        guides = (
+            ()
+            if self.guide_length is not None
+            else (("force on the guides", "no guide_length given"),)
+        )
         return guides if self.pin_diameter is not None else (*guides, NO_PIN)
 
     def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return φ = 2 arctan √(x/(2R − x)) in degrees, and 360° less on the return stroke."""
-        sweep = np.degrees(2 * np.arctan2(np.sqrt(displacement), np.sqrt(self.stroke - displacement)))
+        sweep = np.degrees(
+            2 * np.arctan2(np.sqrt(displacement), np.sqrt(self.stroke - displacement))
+        )
         return sweep if outstroke else 360.0 - sweep

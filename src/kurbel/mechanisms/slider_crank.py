@@ -11,44 +11,92 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.keys import Key
-from kurbel.declared.record import Entry, Rule, Values, alternative, field
-from kurbel.mechanisms import PIN, TURNING, Mechanism, Offer, Sketch, Turning, force_column, requested_column
+from kurbel.declared.record import FieldValue, Rule, ValuesByKey, alternative, field
+from kurbel.mechanisms import (
+    PIN,
+    TURNING,
+    Mechanism,
+    Offer,
+    Sketch,
+    Turning,
+    force_column,
+    requested_column,
+)
 from kurbel.numerics.arithmetic import bearing, every, magnitude, some, sqrt, total, ulp, where
 
 _INFINITE = {"infinite": math.inf}
 
 
-def crank_field() -> Entry:
+def crank_field() -> FieldValue:
     """Return the field of the crank radius of a mechanism that can be given by its stroke."""
     return field("length", "Crank radius; or give `stroke`", "R", above=0, example="400 mm")
 
 
-def stroke_instead(gives: Callable[[Values], dict[str, object]]) -> Key:
+def stroke_instead(gives: Callable[[ValuesByKey], dict[str, object]]) -> Key:
     """Return the field of the stroke, given instead of the crank; gives: the crank, from all values by key."""
-    return alternative("length", "Stroke; or give `crank`", "s", above=0, instead="crank", gives=gives, key="stroke")
+    return alternative(
+        "length",
+        "Stroke; or give `crank`",
+        "s",
+        above=0,
+        instead="crank",
+        gives=gives,
+        key="stroke",
+    )
 
 
-def _book(id: str, kind: str, text: str, formula: Callable[[Number, Number, Number], Number], omega: int = 0) -> Offer:
+def _book(
+    id: str,
+    kind: str,
+    text: str,
+    formula: Callable[[Number, Number, Number], Number],
+    omega: int = 0,
+) -> Offer:
     """Return the first-order approximation of a column; formula: for R = 1. With an offset the books have none."""
 
     def factor(one: Any, angle: CrankAngle) -> Number | None:
         return one.crank * formula(angle.sin, angle.cos, one.lam) if one.straight else None
 
-    return requested_column(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", factor, id, omega)
+    return requested_column(
+        f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", factor, id, omega
+    )
 
 
 def _rod_turn(order: int) -> Offer:
     end, mark, kind, name = TURNING[order]
     text = f"{name} of the rod"
     return requested_column(
-        f"psi{end}", f"ψ{mark}", kind, text, lambda one, angle: -one.coupler_at(angle)[order], "b", order
+        f"psi{end}",
+        f"ψ{mark}",
+        kind,
+        text,
+        lambda one, angle: -one.coupler_at(angle)[order],
+        "b",
+        order,
     )
 
 
 ROD_OFFERS: tuple[Offer, ...] = (
-    _book("x", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)", formulas.first_order_displacement),
-    _book("c", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)", formulas.first_order_velocity, omega=1),
-    _book("b", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)", formulas.first_order_acceleration, 2),
+    _book(
+        "x",
+        "length",
+        "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)",
+        formulas.first_order_displacement,
+    ),
+    _book(
+        "c",
+        "velocity",
+        "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)",
+        formulas.first_order_velocity,
+        omega=1,
+    ),
+    _book(
+        "b",
+        "acceleration",
+        "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)",
+        formulas.first_order_acceleration,
+        2,
+    ),
     _rod_turn(1),
     _rod_turn(2),
 )
@@ -95,7 +143,7 @@ class SliderCrank(Mechanism):
     OFFERS = ROD_OFFERS
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         rod = given.get("rod") if given.get("rod") is not None else given.get("rod_ratio")
         stroke, offset = given.get("stroke"), given.get("offset")
         if not (stroke is None or offset is None or rod is None):
@@ -131,7 +179,11 @@ class SliderCrank(Mechanism):
         """(L − R + e)/L and (L − R − e)/L, the least 1 − sin ψ and 1 + sin ψ; (L + R + e)/L and (L + R − e)/L."""
         if every(self.rod == math.inf):
             return 1.0, 1.0, 1.0, 1.0
-        sums = ((crank, offset) for crank in (-self.crank, self.crank) for offset in (self.offset, -self.offset))
+        sums = (
+            (crank, offset)
+            for crank in (-self.crank, self.crank)
+            for offset in (self.offset, -self.offset)
+        )
         return tuple(total(self.rod, *both) / self.rod for both in sums)
 
     @cached_property
@@ -150,7 +202,9 @@ class SliderCrank(Mechanism):
         if self.straight:
             return 0.0, 180.0
         outer, inner = self._reaches
-        return bearing(self.offset / self.rod, outer), 180.0 + bearing(self.offset / self.rod, inner)
+        return bearing(self.offset / self.rod, outer), 180.0 + bearing(
+            self.offset / self.rod, inner
+        )
 
     def rod_angle(self, angle: CrankAngle) -> tuple[Number, Number]:
         """Return (sin ψ, cos ψ) with sin ψ = (R sin φ − e)/L."""
@@ -158,7 +212,9 @@ class SliderCrank(Mechanism):
             return angle.rod
         lam, gaps = self.lam, self._gaps
         if self.straight:  # 1 − λ² sin²φ without its cancellation
-            return lam * angle.sin, sqrt(angle.cos * angle.cos + gaps[0] * gaps[2] * (angle.sin * angle.sin))
+            return lam * angle.sin, sqrt(
+                angle.cos * angle.cos + gaps[0] * gaps[2] * (angle.sin * angle.sin)
+            )
         near = 1 + magnitude(angle.sin)
         far = angle.cos * angle.cos / near
         up = angle.sin >= 0
@@ -210,7 +266,10 @@ class SliderCrank(Mechanism):
             return self.crank * (angle.versine + self.lam * (angle.sin * angle.sin) / (1 + cos_psi))
         start, (sin_start, cos_start) = self._start, self._start_rod
         # sine and cosine of θ/2, both possibly with the opposite sign, which cancels in the products below
-        sin, cos = angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
+        sin, cos = (
+            angle.sin * start.cos - angle.cos * start.sin,
+            angle.cos * start.cos + angle.sin * start.sin,
+        )
         large = sqrt((1 + magnitude(cos)) / 2)
         small = sin / (2 * large)
         half_sin, half_cos = where(cos >= 0, small, large), where(cos >= 0, large, small)
@@ -281,7 +340,12 @@ def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
     return Sketch.of_crank(
         crank,
         angle,
-        {"top": (x, 1.2 * crank), "bottom": (x, -1.2 * crank), "yoke": (x, 0.0), "rod": (x + 2 * crank, 0.0)},
+        {
+            "top": (x, 1.2 * crank),
+            "bottom": (x, -1.2 * crank),
+            "yoke": (x, 0.0),
+            "rod": (x + 2 * crank, 0.0),
+        },
         ("bottom", "top"),
         ("yoke", "rod"),
         blocks=((PIN, ("bottom", "top")),),
@@ -292,9 +356,14 @@ def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
     )
 
 
-def _crank_of_stroke(given: Values) -> Number:
+def _crank_of_stroke(given: ValuesByKey) -> Number:
     """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR; nan where there is none."""
-    half, rod, k, offset = given["stroke"] / 2, given.get("rod"), given.get("rod_ratio"), given.get("offset") or 0.0
+    half, rod, k, offset = (
+        given["stroke"] / 2,
+        given.get("rod"),
+        given.get("rod_ratio"),
+        given.get("offset") or 0.0,
+    )
     length: Any = k if rod is None else rod
     straight = np.equal(offset, 0) | np.isinf(length)
     if np.all(straight):
@@ -322,11 +391,15 @@ def _stress(state: Any, along: float, across: float) -> Any:
     if state.N is None or arm is None or not pistons or not some(pistons[0].crank_end_rod != 0):
         return None
     diameter = pistons[0].crank_end_rod
-    return (4 * along * state.P + 32 * across * state.N * arm / diameter) / (math.pi * diameter * diameter)
+    return (4 * along * state.P + 32 * across * state.N * arm / diameter) / (
+        math.pi * diameter * diameter
+    )
 
 
 def _stress_column(id: str, symbol: str, text: str, along: float, across: float) -> Offer:
-    return force_column(id, symbol, "stress", text, lambda *_: 1.0, lambda state: _stress(state, along, across))
+    return force_column(
+        id, symbol, "stress", text, lambda *_: 1.0, lambda state: _stress(state, along, across)
+    )
 
 
 BENDING_OFFERS = (
@@ -346,7 +419,13 @@ BENDING_OFFERS = (
         1.0,
         1.0,
     ),
-    _stress_column("sigma_rod_other", "σ_KS2", "Stress of the piston rod on the other side, by P and M_b", 1.0, -1.0),
+    _stress_column(
+        "sigma_rod_other",
+        "σ_KS2",
+        "Stress of the piston rod on the other side, by P and M_b",
+        1.0,
+        -1.0,
+    ),
 )
 
 

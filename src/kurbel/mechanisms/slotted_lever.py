@@ -77,7 +77,11 @@ class SlottedLever(Mechanism):
     )
     frame: float = field("length", "Distance of the lever's pivot from the shaft", "e", above=0)
     lever: float | None = field(
-        "length", "Length of the lever, pivot to end", "R_l", above=0, absent="angles and times only: no ram"
+        "length",
+        "Length of the lever, pivot to end",
+        "R_l",
+        above=0,
+        absent="angles and times only: no ram",
     )
     link: float = field(
         "length",
@@ -104,7 +108,9 @@ class SlottedLever(Mechanism):
 
     def rules(self) -> Iterator[Rule]:
         forked = math.isinf(self.link)
-        yield Rule("link", not (self.slides or forked), "needs the end of the lever; give 'lever' too")
+        yield Rule(
+            "link", not (self.slides or forked), "needs the end of the lever; give 'lever' too"
+        )
         same = "{frame} is also the crank: the pin would pass through the lever's pivot"
         yield Rule("frame", self.crank == self.frame, same)
         fork = forked and self.ram_height is not None
@@ -117,15 +123,23 @@ class SlottedLever(Mechanism):
         if self.rotates:
             least = end + abs(height)
             turning = "as the lever turns fully it must be longer than lever and ram_height together ({least:length})"
-            yield Rule("link", self.link <= least, f"{{link}} does not reach: {turning}", {"least": least})
+            yield Rule(
+                "link", self.link <= least, f"{{link}} does not reach: {turning}", {"least": least}
+            )
             return
         least = max(abs(height - end), abs(height - end * self._kappa[1]))
         numbers = {"ram": height, "least": least}
-        reach = "{link} does not reach the ram at {ram:length}; it must be longer than {least:length}"
+        reach = (
+            "{link} does not reach the ram at {ram:length}; it must be longer than {least:length}"
+        )
         yield Rule("link", self.link <= least, reach, numbers)
-        in_line = self.link > least and min(self._ram(sin, cos).lead for sin, cos in self._limits) <= 0
+        in_line = (
+            self.link > least and min(self._ram(sin, cos).lead for sin, cos in self._limits) <= 0
+        )
         remedy = "give a longer link or another ram_height"
-        yield Rule("link", in_line, f"{{link}} gets into line with the lever within its swing; {remedy}")
+        yield Rule(
+            "link", in_line, f"{{link}} gets into line with the lever within its swing; {remedy}"
+        )
 
     # what it is, by its lengths
 
@@ -171,7 +185,9 @@ class SlottedLever(Mechanism):
         crank, frame, gap = self.crank, self.frame, self.frame - self.crank
         reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
         along_crank = (frame * angle.vercosine - gap) / reach  # (r + e cos φ)/ρ
-        bend = -crank * frame * (gap * (crank + frame)) * angle.sin / (reach * reach * reach * reach)
+        bend = (
+            -crank * frame * (gap * (crank + frame)) * angle.sin / (reach * reach * reach * reach)
+        )
         sin, cos = crank * angle.sin / reach, (gap + crank * angle.vercosine) / reach
         return Lever(sin, cos, reach, crank * along_crank / reach, bend)
 
@@ -187,7 +203,11 @@ class SlottedLever(Mechanism):
         rise = height * short
         run = sqrt((1 - rise) * (1 + rise))
         place = sin - height * rise / (1 + run)
-        return Ram(place, cos - sin * (rise / run), sin + cos * (rise / run) + sin * sin * short / (run * run * run))
+        return Ram(
+            place,
+            cos - sin * (rise / run),
+            sin + cos * (rise / run) + sin * sin * short / (run * run * run),
+        )
 
     @cached_property
     def _limits(self) -> tuple[tuple[float, float], ...]:
@@ -261,7 +281,11 @@ class SlottedLever(Mechanism):
     def slope(self, angle: CrankAngle) -> Number:
         """Return dx/dφ = R_l θ′ cos(θ + γ)/cos γ in m; for the fork head R_l r (r + e cos φ)(e + r cos φ)/ρ³."""
         lever = self._lever_at(angle)
-        return self._end * (lever.slope * self._ram(lever.sin, lever.cos).lead) if self.slides else lever.slope
+        return (
+            self._end * (lever.slope * self._ram(lever.sin, lever.cos).lead)
+            if self.slides
+            else lever.slope
+        )
 
     def curvature(self, angle: CrankAngle) -> Number:
         """Return d²x/dφ² = R_l [θ″ dx/dθ + θ′² d²x/dθ²] in m."""
@@ -287,7 +311,11 @@ class SlottedLever(Mechanism):
     def radial(self, angle: CrankAngle) -> Number | None:
         """Return D/P = −(force on the pin over P) (e sin φ)/ρ: the part of that force toward the shaft."""
         force = self.pin_force_factor(angle)
-        return None if force is None else -force * (self.frame * angle.sin / self._lever_at(angle).reach)
+        return (
+            None
+            if force is None
+            else -force * (self.frame * angle.sin / self._lever_at(angle).reach)
+        )
 
     # what readers see of it
 
@@ -295,7 +323,10 @@ class SlottedLever(Mechanism):
         """Return the crank with its block on the lever, and the ram on its line, which is upright where φ = 0 lies."""
         lever, pivot = self._lever_at(angle), (-self.frame, 0.0)
         length = 1.1 * (self.crank + self.frame) if self.lever is None else self.lever
-        joints, links = {"pivot": pivot, "end": on_circle(length, lever.cos, lever.sin, pivot)}, [("pivot", "end")]
+        joints, links = (
+            {"pivot": pivot, "end": on_circle(length, lever.cos, lever.sin, pivot)},
+            [("pivot", "end")],
+        )
         more: dict[str, Any] = {"fixed": ("pivot",), "blocks": ((PIN, ("pivot", "end")),)}
         if self.slides:
             forked, half = math.isinf(self.link), self.stroke / 2
@@ -303,7 +334,11 @@ class SlottedLever(Mechanism):
             middle = 0.0 if forked else length * sum(self._places) / 2 + self.link
             joints["ram"] = (line, middle + self.coordinate(angle))
             links.append(("end", "ram"))
-            more |= {"guides": (((line, middle - half), (line, middle + half)),), "output": "ram", "toward": (0.0, 1.0)}
+            more |= {
+                "guides": (((line, middle - half), (line, middle + half)),),
+                "output": "ram",
+                "toward": (0.0, 1.0),
+            }
         return Sketch.of_crank(self.crank, angle, joints, *links, **more)
 
     @property
@@ -312,7 +347,11 @@ class SlottedLever(Mechanism):
         lever = ("inertia of the lever", "kurbel takes masses on the ram only")
         if not self.slides:
             return ("ram", "no lever given"), lever
-        link = () if math.isinf(self.link) else (("S, N", "the forces of the link on the ram are not computed"),)
+        link = (
+            ()
+            if math.isinf(self.link)
+            else (("S, N", "the forces of the link on the ram are not computed"),)
+        )
         return (*link, lever) if self.pin_diameter is not None else (*link, lever, NO_PIN)
 
     @property
@@ -320,7 +359,9 @@ class SlottedLever(Mechanism):
         """Say that the lever turns fully, where it does, and that the pin slides past its end, where it does."""
         found, farthest = [], self.frame + self.crank
         if self.rotates:
-            found.append("The frame is shorter than the crank: the lever turns fully (Whitworth quick return).")
+            found.append(
+                "The frame is shorter than the crank: the lever turns fully (Whitworth quick return)."
+            )
         if self.turns:
             found.append(
                 "Without a lever's length the strokes are those of a ram square to the line of the pivots, on a fork "

@@ -41,7 +41,9 @@ def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     of_rod, works = {}, {}
     if mechanism.slides and not mechanism.has_rod:
         pressed = cylinder.inclination is not None and cylinder.masses
-        known = mechanism.known_across and (pressed or (cylinder.friction and cylinder.friction.block))
+        known = mechanism.known_across and (
+            pressed or (cylinder.friction and cylinder.friction.block)
+        )
         of_rod = {"S" if known else "S, N": f"a {mechanism.name} has no connecting rod"}
     # of a ram without a piston nobody expects an indicator
     if mechanism.slides and (cylinder.pistons or not cylinder.ram_force):
@@ -49,7 +51,14 @@ def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
         works = {"work": no_gas, "power": no_gas or _speeds(machine)[1]}
         if machine.brake_power is not None:
             works["comparison with brake_power"] = works["power"]
-    return {**motion, **acting, "forces in the crank train": "", **of_rod, **dict(mechanism.lacks), **works}
+    return {
+        **motion,
+        **acting,
+        "forces in the crank train": "",
+        **of_rod,
+        **dict(mechanism.lacks),
+        **works,
+    }
 
 
 def _motion_stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
@@ -63,11 +72,15 @@ def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     if cylinder.pistons and not any(piston.indicator for piston in cylinder.pistons):
         no_gas = "no indicator given"
     rods = {
-        f"piston rod of {piston.name}" if number else "piston rod": "no crank_end_rod given, its area is taken as 0"
+        f"piston rod of {piston.name}"
+        if number
+        else "piston rod": "no crank_end_rod given, its area is taken as 0"
         for number, piston in enumerate(cylinder.pistons)
         if piston.indicator and piston.indicator.crank_end is not None and not piston.crank_end_rod
     }
-    expected = cylinder.ram_force or cylinder.mechanism.quick_return  # of an engine nobody expects a ram
+    expected = (
+        cylinder.ram_force or cylinder.mechanism.quick_return
+    )  # of an engine nobody expects a ram
     ram = {"ram force": "" if cylinder.ram_force else "no ram_force given"} if expected else {}
     return {
         "gas force": no_gas,
@@ -115,7 +128,11 @@ def turning_stages(machine: Machine) -> dict[str, str]:
     alone = "its swing of energy alone is given" if isinstance(effort, Swing) else ""
     no_mean = "no mean torque given" if isinstance(effort, Swing) and effort.mean is None else ""
     return {
-        **({"ΔE": "", "turning effort and speed over the angle": alone} if alone else {"turning effort, ΔE": ""}),
+        **(
+            {"ΔE": "", "turning effort and speed over the angle": alone}
+            if alone
+            else {"turning effort, ΔE": ""}
+        ),
         "T, W": "" if machine.cylinders else "no crank: the effort is given as a torque",
         "power": speed or no_mean,
         **({"J": speed} if wanted else {}),
@@ -146,21 +163,30 @@ def strength_left_out(machine: Machine) -> Iterator[LeftOut]:
     shaft = machine.crankshaft
     if shaft is None:
         return
-    upright = "" if all(cylinder.inclination is not None for cylinder in machine.cylinders) else "no inclination given"
+    upright = (
+        ""
+        if all(cylinder.inclination is not None for cylinder in machine.cylinders)
+        else "no inclination given"
+    )
     journals = "" if shaft.journal_diameter else "no journal_diameter given"
     yield from missing(
         {
             "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
             "journals": journals,
-            "pressure on the journals": journals or ("" if shaft.journal_length else "no journal_length given"),
+            "pressure on the journals": journals
+            or ("" if shaft.journal_length else "no journal_length given"),
             "p_m v": _speeds(machine)[0],
             "safety": "" if shaft.allowable_bending else "no allowable_bending given",
-            "α₀ of the webs": "" if shaft.allowable_bending and shaft.allowable_torsion else "1 without k_b and k_d",
+            "α₀ of the webs": ""
+            if shaft.allowable_bending and shaft.allowable_torsion
+            else "1 without k_b and k_d",
         }
     )
 
 
-def bearing_left_out(diameter: float | None, length: float | None, omega: Number | None) -> Iterator[LeftOut]:
+def bearing_left_out(
+    diameter: float | None, length: float | None, omega: Number | None
+) -> Iterator[LeftOut]:
     """Yield what the load on a pin or bearing leaves out; omega: angular speed of the crank, None if not given."""
     if lacks := [name for name, size in (("diameter", diameter), ("length", length)) if not size]:
         yield LeftOut("pressure, p v", f"no {' and '.join(lacks)} given")
@@ -189,13 +215,18 @@ def balance_left_out(case: Case, compare: bool = False) -> Iterator[LeftOut]:
         if cylinder.name not in moving:
             yield LeftOut(f"inertia of {cylinder.name}", "no masses given")
     if balance.omega is None:
-        yield LeftOut("unbalanced forces and moments", "no speed given; the counterweights do not depend on it")
+        yield LeftOut(
+            "unbalanced forces and moments",
+            "no speed given; the counterweights do not depend on it",
+        )
     if balance.free.moment is None:
         placeless = [throw.name for throw in balance.throws if throw.place is None]
-        if any(one.place is None for one in balance.counterweights):
+        if any(counterweight.place is None for counterweight in balance.counterweights):
             placeless.append("counterweights of the machine")
-        if any(one.axial_position is None for one in machine.balance_shafts):
+        if any(balance_shaft.axial_position is None for balance_shaft in machine.balance_shafts):
             placeless.append("balance_shafts")
         yield LeftOut("unbalanced moments", f"no axial_position given of {', '.join(placeless)}")
     if compare and balance.book is None:
-        yield LeftOut("figures of first order", "the book has no such formula for an offset stroke line")
+        yield LeftOut(
+            "figures of first order", "the book has no such formula for an offset stroke line"
+        )

@@ -13,7 +13,13 @@ def whole_machine(command: str) -> Callable[[Case], list[Subject]]:
     def subjects(case: Case) -> list[Subject]:
         (found,) = case.results(command)
         return [
-            Subject("whole machine", found, found.at if found.state else None, warnings=of_machine(case), whole=True)
+            Subject(
+                "whole machine",
+                found,
+                found.at if found.state else None,
+                warnings=of_machine(case),
+                whole=True,
+            )
         ]
 
     return subjects

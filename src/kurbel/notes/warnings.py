@@ -18,7 +18,7 @@ from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
-from kurbel.machine.indicator import Card, Line
+from kurbel.machine.indicator import Card, CardLine
 from kurbel.machine.turning import Effort
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
@@ -55,7 +55,9 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
     for cylinder in machine.cylinders:
         add(_size_warnings(cylinder), cylinder.name)
     add(pin_warnings(machine))
-    if machine.effort or any(one.pistons or one.masses or one.ram_force or one.moment for one in machine.cylinders):
+    if machine.effort or any(
+        one.pistons or one.masses or one.ram_force or one.moment for one in machine.cylinders
+    ):
         with np.errstate(all="ignore"):
             for forces in case.cylinders:
                 add(_trace_warnings(forces), forces.drive.name)
@@ -98,7 +100,9 @@ def of_machine(case: Case) -> Iterator[str]:
 # what was given: sizes and speeds
 
 _LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1849, has 3.66 m
-_LARGEST_MASS = 1e5  # kg reciprocating in one cylinder; those of the largest marine diesels weigh some 2e4
+_LARGEST_MASS = (
+    1e5  # kg reciprocating in one cylinder; those of the largest marine diesels weigh some 2e4
+)
 _HIGHEST_SPEED = 1000.0  # 1/s; model racing engines stay below 700
 _ASK = "is beyond anything built; is its unit right?"
 _LARGEST_FLUCTUATION = 0.25  # the largest that the books permit is 1/5, for crushers and hammers
@@ -137,7 +141,11 @@ _SAME_ANGLE = 1e-6  # degrees
 
 def pin_warnings(machine: Machine) -> Iterator[str]:
     """Yield warnings on cylinders at one place along the shaft that share no crank pin."""
-    placed = [(one.axial_position, one) for one in machine.cylinders if one.axial_position is not None]
+    placed = [
+        (cylinder.axial_position, cylinder)
+        for cylinder in machine.cylinders
+        if cylinder.axial_position is not None
+    ]
     for (z, one), (next_z, other) in pairwise(sorted(placed, key=lambda pair: pair[0])):
         # the throws at φ = 0
         throws = other.bank_angle - other.crank_position, one.bank_angle - one.crank_position
@@ -164,15 +172,24 @@ def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
             place = f"{piston.name}, {end.replace('_', ' ')}"
-            yield from (f"{place}: {text}" for text in (() if isinstance(chamber, Compressor) else chamber.notes))
-            exponents = {chamber.exponent} if isinstance(chamber, (Steam, Compressor, Otto, Diesel)) else set()
+            yield from (
+                f"{place}: {text}"
+                for text in (() if isinstance(chamber, Compressor) else chamber.notes)
+            )
+            exponents = (
+                {chamber.exponent}
+                if isinstance(chamber, (Steam, Compressor, Otto, Diesel))
+                else set()
+            )
             if isinstance(chamber, (Compressor, Otto, Diesel)) and chamber.expansion_exponent:
                 exponents.add(chamber.expansion_exponent)
             least, most = _EXPONENTS
             for value in exponents:
                 if not least <= value <= most:
                     yield f"{place}: an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
-        asymmetries = [_asymmetry(card) for card in piston.chambers.values() if isinstance(card, Card)]
+        asymmetries = [
+            _asymmetry(card) for card in piston.chambers.values() if isinstance(card, Card)
+        ]
         # a high pressure on the same side, at the same crank angle: drawn from the same dead centre?
         if len(asymmetries) == 2 and min(asymmetries) < -_PLAIN and max(asymmetries) > _PLAIN:
             end, centre = ("crank end", "outer") if asymmetries[1] < 0 else ("head end", "inner")
@@ -188,10 +205,12 @@ def _asymmetry(card: Card) -> float:
     return float(np.mean(pressures * (1 - 2 * _STROKE)) / (np.ptp(pressures) or 1.0))
 
 
-def _pressures(line: Line) -> Array:
+def _pressures(line: CardLine) -> Array:
     """Return the pressures of a line of a card, whichever way it is drawn, at `_STROKE` (n,)."""
     order = np.argsort(line.fractions, kind="stable")
-    pressures: Array = np.interp(_STROKE, np.take(line.fractions, order), np.take(line.pressures, order))
+    pressures: Array = np.interp(
+        _STROKE, np.take(line.fractions, order), np.take(line.pressures, order)
+    )
     return pressures
 
 
@@ -279,7 +298,11 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
     angle, ratio = (loads.reversal_longest, loads.reversal_ratio) if loads else (None, None)
     if angle == 0:
         yield "the rod load never reverses: no oil reaches the loaded side of the crosshead pin"
-    elif angle is not None and ratio is not None and (angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1]):
+    elif (
+        angle is not None
+        and ratio is not None
+        and (angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1])
+    ):
         yield (
             f"the rod load reverses over {angle:.3g} deg, to {100 * ratio:.3g} % of the larger load; API 618 "
             "requires 15 deg and 3 %"
@@ -327,24 +350,42 @@ _STILL = 1.2
 def rod_ratio_notes(case: Case) -> Iterator[str]:
     """Yield L/R of machines beyond the 4 to 5 of the books for their kind (R Zusammenstellung 112, Blau)."""
     least, most = _USUAL_RATIO
-    for forces in case.cylinders if not case.machine.locomotive else ():  # Redtenbacher has 6 for locomotives
+    for forces in (
+        case.cylinders if not case.machine.locomotive else ()
+    ):  # Redtenbacher has 6 for locomotives
         mechanism = forces.drive.mechanism
         ratio = 1 / mechanism.lam if mechanism.has_rod and mechanism.lam > 0 else math.inf
-        if not least - 1e-9 <= ratio <= most + 1e-9 and ratio < math.inf and (kind := _kind_of(forces)):
+        if (
+            not least - 1e-9 <= ratio <= most + 1e-9
+            and ratio < math.inf
+            and (kind := _kind_of(forces))
+        ):
             yield f"{forces.drive.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}."
 
 
 def _kind_of(forces: CylinderForces) -> str:
     """Return the kind of machine, if it is one that the books on L/R have; '' for compressors and trunk pistons."""
     pistons, ambient = forces.drive.cylinder.pistons, forces.drive.machine.ambient
-    chambers = [one for piston in pistons for one in piston.chambers.values()]
-    lifts = [0.0 if one.indicator and one.indicator.absolute else ambient for one in pistons for _ in one.chambers]
-    if any(isinstance(one, Steam) or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)):
+    chambers = [chamber for piston in pistons for chamber in piston.chambers.values()]
+    lifts = [
+        0.0 if one.indicator and one.indicator.absolute else ambient
+        for one in pistons
+        for _ in one.chambers
+    ]
+    if any(
+        isinstance(one, Steam) or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)
+    ):
         return "steam engines"
     if (forces.work or 0.0) < 0:
-        return "pumps" if all(isinstance(one, Card) and one.flat for one in chambers) else ""
+        return (
+            "pumps"
+            if all(isinstance(chamber, Card) and chamber.flat for chamber in chambers)
+            else ""
+        )
     crosshead = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
-    burns = any(isinstance(one, (Otto, Diesel)) or forces.drive.cycle > 360 for one in chambers)
+    burns = any(
+        isinstance(chamber, (Otto, Diesel)) or forces.drive.cycle > 360 for chamber in chambers
+    )
     return "gas engines with a crosshead" if crosshead and burns else ""
 
 
@@ -387,15 +428,27 @@ def _turning_warnings(case: Case) -> Iterator[str]:
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
         yield "both 'efficiency' and 'friction' are given: friction is counted twice"
-    if turning.J_needed is not None and turning.delta_needed is not None and turning.misses_wanted_delta:
-        better = "" if turning.J_exact is None else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
+    if (
+        turning.J_needed is not None
+        and turning.delta_needed is not None
+        and turning.misses_wanted_delta
+    ):
+        better = (
+            ""
+            if turning.J_exact is None
+            else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
+        )
         yield (
             f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
             f"{turning.delta_needed:.4g}{better}"
         )
     if turning.multiplier is not None and turning.multiplier > 1:
         more, least = turning.multiplier - 1, "at least " if turning.multiplier > _BEYOND else ""
-        grows = f"by {more:.2g} of itself" if more < _SLOWLY else f"{least}{turning.multiplier:.4g} times"
+        grows = (
+            f"by {more:.2g} of itself"
+            if more < _SLOWLY
+            else f"{least}{turning.multiplier:.4g} times"
+        )
         yield f"unstable: a disturbance of the speed grows {grows} in every cycle"
     if turning.load_ignored:
         yield "the mean torque is zero, so that a load proportional to it does not govern the speed; it is left out"
@@ -409,7 +462,12 @@ def _turning_warnings(case: Case) -> Iterator[str]:
     if turning.elastic and turning.elastic.delta > _LINEAR:
         yield "the speed varies so much that the coupling, computed at nearly uniform rotation, is only a rough guide"
     rim = machine.flywheel.rim if machine.flywheel else None
-    if rim and rim.allowable_tension and turning.rim_stress and turning.rim_stress > rim.allowable_tension:
+    if (
+        rim
+        and rim.allowable_tension
+        and turning.rim_stress
+        and turning.rim_stress > rim.allowable_tension
+    ):
         yield (
             f"the hoop stress of the rim, {show(turning.rim_stress, 'stress')}, exceeds the allowable "
             f"{show(rim.allowable_tension, 'stress')}"
@@ -423,7 +481,10 @@ _SHELLS = {
         (35.0, "permissible for the best white metal only (30 to 35)"),
         (math.inf, "more than permissible for white metal (30 to 35)"),
     ),
-    "gunmetal": ((25.0, "permissible for gun metal (25)"), (math.inf, "more than gun metal (25) permits")),
+    "gunmetal": (
+        (25.0, "permissible for gun metal (25)"),
+        (math.inf, "more than gun metal (25) permits"),
+    ),
     "white-metal": (
         (30.0, "permissible for white metal (30 to 35)"),
         (35.0, "permissible only for the best white metal (30 to 35)"),
@@ -440,7 +501,10 @@ def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> 
     """
     if pressure_velocity is None:
         return True, ""
-    shown, shells = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2"), _SHELLS[metal or ""]
+    shown, shells = (
+        convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2"),
+        _SHELLS[metal or ""],
+    )
     bound, verdict = next(shell for shell in shells if shown <= shell[0])
     symbol = "k_v = p_m v" if metal else "p_m v"
     return bound == shells[0][0], f"Crank pin: {symbol} = {shown:.3g} kgf m/(cm² s); {verdict}."
@@ -449,7 +513,9 @@ def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> 
 def shells(case: Case) -> tuple[bool, str]:
     """Return the verdict on the shells of a machine whose crankshaft is examined."""
     shaft = case.machine.crankshaft
-    return shell_verdict(case.stress.pressure_velocity("pin"), shaft.bearing_metal if shaft else None)
+    return shell_verdict(
+        case.stress.pressure_velocity("pin"), shaft.bearing_metal if shaft else None
+    )
 
 
 def rods_on_pin(shaft: Crankshaft) -> str:
@@ -481,7 +547,11 @@ _ROUNDED = 0.05
 def bearing_warnings(case: Case) -> Iterator[str]:
     """Yield that the throws are not as far apart as their bearings put them."""
     shaft, cylinders = case.machine.crankshaft, case.machine.cylinders
-    if shaft is None or shaft.overhung or any(one.axial_position is None for one in cylinders):
+    if (
+        shaft is None
+        or shaft.overhung
+        or any(cylinder.axial_position is None for cylinder in cylinders)
+    ):
         return
     throws, apart = case.bearings.line.throws if case.bearings.line else (), shaft.a + shaft.b
     given = [float(following.place - one.place) for one, following in pairwise(throws)]

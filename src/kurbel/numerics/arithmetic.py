@@ -102,10 +102,16 @@ def unless_cancelled(whole: Any, sizes: Number, rounding: float = _ROUNDING) -> 
     (array(0.), array(0.1))
     """
     if np.iscomplexobj(whole):
-        return unless_cancelled(whole.real, sizes, rounding) + 1j * unless_cancelled(whole.imag, sizes, rounding)
+        return unless_cancelled(whole.real, sizes, rounding) + 1j * unless_cancelled(
+            whole.imag, sizes, rounding
+        )
     return np.where(np.abs(whole) > rounding * sizes, whole, 0.0)
 
 
 def spread(number: Any, machine: Indices | None) -> Any:
     """Return the numbers (machines,) of the machines in an index; a single number is returned as it is."""
-    return number[machine] if isinstance(number, np.ndarray) and number.ndim and machine is not None else number
+    return (
+        number[machine]
+        if isinstance(number, np.ndarray) and number.ndim and machine is not None
+        else number
+    )

@@ -17,7 +17,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Flags
 from kurbel.numerics.lobatto import chebyshev, integral_of_series, rule
-from kurbel.numerics.pieces import TAIL, Pieces, joined
+from kurbel.numerics.pieces import TAIL, Pieces, joined_pieces
 
 _NARROWEST = 1e-10
 """Degrees of a piece that is halved no more."""
@@ -81,12 +81,16 @@ class Radau:
         n = np.arange(count)
         off = n[1:] / np.sqrt(4.0 * n[1:] ** 2 - 1)
         last = np.where(n == count - 1, count / (2 * count - 1), 0.0)
-        self.nodes = np.append(np.linalg.eigvalsh(np.diag(last) + np.diag(off, 1) + np.diag(off, -1))[:-1], 1.0)
+        self.nodes = np.append(
+            np.linalg.eigvalsh(np.diag(last) + np.diag(off, 1) + np.diag(off, -1))[:-1], 1.0
+        )
         at_nodes = chebyshev(self.nodes, count + 1)
         self.area = at_nodes @ integral_of_series(count) @ np.linalg.inv(at_nodes[:, :count])
         places = np.append(-1.0, self.nodes)
         self.series = np.linalg.inv(chebyshev(places, count + 1))
-        self.halving = chebyshev(np.concatenate((places - 1, places + 1)) / 2, count + 1) @ self.series
+        self.halving = (
+            chebyshev(np.concatenate((places - 1, places + 1)) / 2, count + 1) @ self.series
+        )
         self.from_lobatto = at_nodes[:, :count] @ rule(count).series
         self.to_lobatto = chebyshev(rule(count).nodes, count + 1) @ self.series
 
@@ -123,7 +127,9 @@ class Periodic(NamedTuple):
         share = (1 + self.y[self.equation.bounded, 1:] / system.height).T
         degrees = self.pieces.low + self.pieces.half * (1 + system.rule.nodes[:, None])
         stops = share.min() <= _STANDING
-        raise Unsettled(float(self.short[0]), float(degrees.T.ravel()[np.argmin(share)]) if stops else None)
+        raise Unsettled(
+            float(self.short[0]), float(degrees.T.ravel()[np.argmin(share)]) if stops else None
+        )
 
     @property
     def growth(self) -> Array:
@@ -147,12 +153,16 @@ def periodic(equation: Equation, pieces: Pieces) -> Periodic:
     followed down to the given one. What a linear equation leaves open is as small as can be.
     """
     pieces = replace(pieces, rule=rule(max(_FEWEST, len(pieces.rule.nodes))))
-    still = _Solution(pieces, np.zeros((equation.unknowns, len(pieces.rule.nodes) + 1, len(pieces.half))))
+    still = _Solution(
+        pieces, np.zeros((equation.unknowns, len(pieces.rule.nodes) + 1, len(pieces.half)))
+    )
     with np.errstate(all="ignore"):  # a step too far may overflow; it is taken back
         found, good = _settled(equation, still, np.zeros(pieces.count))
         if good.all() or equation.bounded is None:
             return Periodic(equation, *found, ~good, np.full(pieces.count, np.nan))
-        own = np.maximum(_largest(pieces, _System(equation, pieces, np.zeros(pieces.count)).height), 0.0)
+        own = np.maximum(
+            _largest(pieces, _System(equation, pieces, np.zeros(pieces.count)).height), 0.0
+        )
         found = _joined([found.of(good), still.of(~good)])
         running, height = ~good & np.isfinite(own) & (own > 0), np.where(good, own, np.nan)
         target, share = own * _ENDLESS, np.full_like(own, _STEP)
@@ -160,10 +170,14 @@ def periodic(equation: Equation, pieces: Pieces) -> Periodic:
             running = running & ~(height <= own) & (share <= _SHORTEST)
             if not running.any():
                 break
-            finer, better = _settled(equation, found.of(running), np.where(running, target - own, 0.0))
+            finer, better = _settled(
+                equation, found.of(running), np.where(running, target - own, 0.0)
+            )
             found = _joined([found.of(~better), finer.of(better)])
             height = np.where(better, target, height)
-            share = np.where(better, np.maximum(share**1.5, _STEP), np.where(running, np.sqrt(share), share))
+            share = np.where(
+                better, np.maximum(share**1.5, _STEP), np.where(running, np.sqrt(share), share)
+            )
             target = np.maximum(height * share, own)
     return Periodic(equation, *found, ~(height <= own), height - own)
 
@@ -181,7 +195,9 @@ class _Solution(NamedTuple):
 
 
 def _joined(parts: Sequence[_Solution]) -> _Solution:
-    whole, (y,) = joined([(one.pieces, np.arange(len(one.pieces.half)), [one.y]) for one in parts])
+    whole, (y,) = joined_pieces(
+        [(part.pieces, np.arange(len(part.pieces.half)), [part.y]) for part in parts]
+    )
     return _Solution(whole, y)
 
 
@@ -225,7 +241,9 @@ def _settled(equation: Equation, left: _Solution, eased: Array) -> tuple[_Soluti
         if equation.bounded is not None:  # a polynomial may fall below the bound between its nodes
             bounded = fine[equation.bounded, 1:]
             np.maximum(bounded, -0.99 * _System(equation, halves, eased).height, out=bounded)
-        left = _joined([_Solution(left.pieces.taken(~rough), left.y[..., ~rough]), _Solution(halves, fine)])
+        left = _joined(
+            [_Solution(left.pieces.taken(~rough), left.y[..., ~rough]), _Solution(halves, fine)]
+        )
     else:
         done.append(left)
     return _joined(done), settled
@@ -268,13 +286,17 @@ class _System:
         for start in range(0, count, chunk):
             some = np.s_[start : start + chunk]
             slopes = stiffness[..., some].transpose(3, 0, 2, 1)[:, None]
-            systems = np.eye(m * k) - (self.rule.area[:, None, :, None] * slopes).reshape(-1, m * k, m * k)
+            systems = np.eye(m * k) - (self.rule.area[:, None, :, None] * slopes).reshape(
+                -1, m * k, m * k
+            )
             sides = np.empty((len(systems), k, m, m + 1))
             sides[..., 0], sides[..., 1:] = lack[..., some].transpose(2, 1, 0), np.eye(m)
             flat = sides.reshape(-1, m * k, m + 1)
             try:
                 solved = np.linalg.solve(systems, flat)
-            except np.linalg.LinAlgError:  # one is exactly singular: its step becomes too long, and is taken back
+            except (
+                np.linalg.LinAlgError
+            ):  # one is exactly singular: its step becomes too long, and is taken back
                 solved = np.linalg.solve(systems + 1e-14 * np.eye(m * k), flat)
             found[:, some] = solved.reshape(sides.shape).swapaxes(0, 1)
         return found[..., 0], found[..., 1:]
@@ -311,7 +333,9 @@ class _System:
             jump, lack, stiffness = lacking
             response, gain = self.inside(lack, stiffness)
             more = self.padded(response[-1] + jump[:, self.after].T, np.zeros(len(y)))
-            start = around_the_cycle(self.padded(gain[-1], np.eye(len(y))), more)[self._row, self._place]
+            start = around_the_cycle(self.padded(gain[-1], np.eye(len(y))), more)[
+                self._row, self._place
+            ]
             nodes = response + (gain @ start[:, :, None])[..., 0]
             step = np.concatenate((start[None], nodes)).transpose(2, 0, 1)
             size = _largest(pieces, np.abs(step))
@@ -322,7 +346,10 @@ class _System:
             near = np.maximum(1e-9 * _swing(pieces, y + step).max(axis=0), 1e-14 * highest)
             share = np.ones(pieces.count)
             if bounded is not None:
-                share /= np.maximum(_largest(pieces, -step[bounded, 1:] / (0.9 * (y[bounded, 1:] + self.height))), 1.0)
+                share /= np.maximum(
+                    _largest(pieces, -step[bounded, 1:] / (0.9 * (y[bounded, 1:] + self.height))),
+                    1.0,
+                )
             while True:
                 new = y + share[of] * step
                 lacking = self.lacking(new)
@@ -335,7 +362,11 @@ class _System:
 
             # the next step makes up what is still lacking: for a linear equation only rounding
             left = np.where(now > 0, size * after / now, 0.0)
-            small = (size <= 1e-6 * near) | (left <= 1e-5 * near) | ((size <= near) & (size >= previous / 4))
+            small = (
+                (size <= 1e-6 * near)
+                | (left <= 1e-5 * near)
+                | ((size <= near) & (size >= previous / 4))
+            )
             good |= going & (share == 1) & small
             going &= ~good & (share > 1e-6)
             previous = np.where(share == 1, size, np.inf)
@@ -348,13 +379,18 @@ def around_the_cycle(gain: Array, more: Array) -> Array:
     A single unknown that grows along the cycle is followed backward, where it decays. What the equations leave open is
     taken as small as can be. Of what is not finite it is not a number.
     """
-    finite = np.asarray(np.isfinite(gain).all(axis=(1, 2, 3)) & np.isfinite(more).all(axis=(1, 2)))[:, None, None]
+    finite = np.asarray(np.isfinite(gain).all(axis=(1, 2, 3)) & np.isfinite(more).all(axis=(1, 2)))[
+        :, None, None
+    ]
     gain, more = np.where(finite[..., None], gain, 0.0), np.where(finite, more, 0.0)
     grows = np.zeros(())
     if more.shape[2] == 1:
         grows = (np.log(np.maximum(np.abs(gain), 1e-300)).sum(axis=(1, 2, 3)) > 0)[:, None, None]
         back = 1 / np.where(grows[..., None], gain[:, ::-1], 1.0)
-        gain, more = np.where(grows[..., None], back, gain), np.where(grows, -more[:, ::-1] * back[..., 0], more)
+        gain, more = (
+            np.where(grows[..., None], back, gain),
+            np.where(grows, -more[:, ::-1] * back[..., 0], more),
+        )
     found = _paired(gain, more)
     return np.where(finite, np.where(grows, np.roll(found[:, ::-1], 1, axis=1), found), np.nan)
 
@@ -367,7 +403,10 @@ def _paired(gain: Array, more: Array) -> Array:
         return (closed @ more[:, 0, :, None])[:, None, :, 0]
     if count % 2:  # a piece on which nothing changes
         unit = np.broadcast_to(np.eye(size), gain[:, :1].shape)
-        gain, more = np.concatenate((gain, unit), axis=1), np.concatenate((more, 0 * more[:, :1]), axis=1)
+        gain, more = (
+            np.concatenate((gain, unit), axis=1),
+            np.concatenate((more, 0 * more[:, :1]), axis=1),
+        )
     (first, second), (early, late) = (gain[:, ::2], gain[:, 1::2]), (more[:, ::2], more[:, 1::2])
     starts = _paired(second @ first, (second @ early[..., None])[..., 0] + late)
     middles = (first @ starts[..., None])[..., 0] + early

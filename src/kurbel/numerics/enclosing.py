@@ -101,10 +101,14 @@ class ClosedCurve:
         """Return c e^{−iφ}, the curve as it is seen from a frame that turns with φ."""
         return ClosedCurve(np.concatenate((self.waves, np.zeros_like(self.waves[:2]))))
 
-    def at(self, degrees: Array, machine: Indices | int = 0) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    def at(
+        self, degrees: Array, machine: Indices | int = 0
+    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """Return the points at angles (…) in degrees, and their first and second derivatives by φ in radians."""
         numbers = self.numbers.reshape(-1, *(1 for _ in degrees.shape))
-        waves = self.waves[:, np.broadcast_to(machine, degrees.shape)] * np.exp(1j * np.radians(numbers * degrees))
+        waves = self.waves[:, np.broadcast_to(machine, degrees.shape)] * np.exp(
+            1j * np.radians(numbers * degrees)
+        )
         weights = np.stack((np.ones(len(waves)), 1j * self.numbers, -(self.numbers**2)))
         point, slope, bend = np.tensordot(weights, waves, 1)
         return point, slope, bend
@@ -121,7 +125,11 @@ class ClosedCurve:
         """Return the largest distances from 0, and the first angles in degrees that have them, each (machines,)."""
         step, sizes = 360.0 / len(self.samples), np.abs(self.samples)
         best = sizes.max(axis=0)
-        top = (sizes >= np.roll(sizes, 1, axis=0)) & (sizes >= np.roll(sizes, -1, axis=0)) & (sizes >= _HIGH * best)
+        top = (
+            (sizes >= np.roll(sizes, 1, axis=0))
+            & (sizes >= np.roll(sizes, -1, axis=0))
+            & (sizes >= _HIGH * best)
+        )
         level = ~(best - sizes.min(axis=0) > _ROUNDING * best)  # of a circle every angle is as far
         top[:, level] = np.arange(len(sizes))[:, None] == 0
         machine, place = np.nonzero(top.T)
@@ -134,7 +142,10 @@ class ClosedCurve:
             moved = (point.conj() * slope).real / np.where(summit, -speed - turn, np.inf)
             degrees = np.clip(degrees + np.degrees(moved), sample - step, sample + step)
         degrees = np.mod(np.where(np.abs(degrees - sample) < 1e-9, sample, degrees), 360.0)
-        lengths, first = np.abs(self.at(degrees, machine)[0]), np.searchsorted(machine, np.arange(len(best)))
+        lengths, first = (
+            np.abs(self.at(degrees, machine)[0]),
+            np.searchsorted(machine, np.arange(len(best))),
+        )
         largest = np.maximum.reduceat(lengths, first)
         reached = ~(lengths < (1 - _EQUAL) * largest[machine])
         return largest, np.minimum.reduceat(np.where(reached, degrees, np.inf), first)
@@ -149,7 +160,9 @@ class ClosedCurve:
         degrees = np.zeros((4, len(size))) if even.all() else self._nearly_enclosed()
         for _ in range(_ROUNDS):
             circle, degrees = self._enclosed(degrees)
-            centre = np.where(even | (np.abs(circle.centre) <= _ROUNDING * size), 0.0, circle.centre)
+            centre = np.where(
+                even | (np.abs(circle.centre) <= _ROUNDING * size), 0.0, circle.centre
+            )
             radius, at = self.plus(0, -centre).farthest()
             beyond = ~even & (radius > np.sqrt(circle.square) * (1 + _SETTLED) + _ROUNDING * size)
             if not beyond.any():
@@ -163,7 +176,13 @@ class ClosedCurve:
         A circle round four samples grows as the farthest sample takes the place of one that does not carry it.
         """
         samples, each = self.samples, np.arange(self.samples.shape[1])
-        rows = np.array([measure.argmax(axis=0) for side in (samples, -samples) for measure in (side.real, side.imag)])
+        rows = np.array(
+            [
+                measure.argmax(axis=0)
+                for side in (samples, -samples)
+                for measure in (side.real, side.imag)
+            ]
+        )
         for _ in range(_ROUNDS):
             circle = smallest_circle(samples[rows, each])
             distance = np.abs(samples - circle.centre) ** 2
@@ -190,7 +209,11 @@ class ClosedCurve:
         for _ in range(_ROUNDS):
             point, slope, bend = self.at(degrees, machine)
             arm = point - centre
-            touching, speed, turn = (arm.conj() * slope).real, np.abs(slope) ** 2, (arm.conj() * bend).real
+            touching, speed, turn = (
+                (arm.conj() * slope).real,
+                np.abs(slope) ** 2,
+                (arm.conj() * bend).real,
+            )
             summit = speed + turn < -_FLAT * (speed + np.abs(turn))
             yielding = np.where(summit, 1 / np.where(summit, speed + turn, 1.0), 0.0)  # 1/τ
             step = -touching * yielding

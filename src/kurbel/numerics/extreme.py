@@ -47,7 +47,9 @@ def smallest(first: Extreme, *others: Extreme) -> Extreme:
 
 def chosen(condition: Truth, extreme: Extreme, otherwise: Extreme) -> Extreme:
     """Return the extreme where the condition holds, else the other one."""
-    return Extreme(*(where(condition, one, other) for one, other in zip(extreme, otherwise, strict=True)))
+    return Extreme(
+        *(where(condition, one, other) for one, other in zip(extreme, otherwise, strict=True))
+    )
 
 
 _ALIKE = 1e-13
@@ -65,4 +67,6 @@ class Extremes(NamedTuple):
         """The largest magnitude, of either sign; of two that differ only by rounding the first."""
         high, low = self.largest, Extreme(-self.smallest.value, self.smallest.degrees)
         alike = abs(low.value - high.value) <= _ALIKE * abs(high.value)
-        return chosen(np.where(alike, low.degrees < high.degrees, low.value > high.value), low, high)
+        return chosen(
+            np.where(alike, low.degrees < high.degrees, low.value > high.value), low, high
+        )

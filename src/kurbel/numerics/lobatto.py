@@ -29,7 +29,9 @@ class LobattoRule:
         self.series = np.linalg.inv(chebyshev(self.nodes, count))
         self.slope = slope_of_series(count)
         self.area = chebyshev(self.nodes, count + 1) @ integral_of_series(count) @ self.series
-        self.halving = chebyshev(np.concatenate((self.nodes - 1, self.nodes + 1)) / 2, count) @ self.series
+        self.halving = (
+            chebyshev(np.concatenate((self.nodes - 1, self.nodes + 1)) / 2, count) @ self.series
+        )
         self.places = np.sin(np.pi / 2 * np.linspace(-1, 1, 2 * count + 1))
         self.scan = chebyshev(self.places, count) @ self.series
         self.scan_slope = chebyshev(self.places, count - 1) @ self.slope @ self.series

@@ -69,7 +69,10 @@ class Angles(NamedTuple):
         """Return them as a tuple; of many machines one tuple each."""
         if count is None:
             return tuple(self.degrees.tolist())
-        known, ends = self.degrees.tolist(), np.searchsorted(self.machine, np.arange(count + 1)).tolist()
+        known, ends = (
+            self.degrees.tolist(),
+            np.searchsorted(self.machine, np.arange(count + 1)).tolist(),
+        )
         return tuple(tuple(known[low:high]) for low, high in pairwise(ends))
 
 
@@ -87,7 +90,9 @@ class SampledExtremes(NamedTuple):
     def each(self, result: Callable[[Array], Any]) -> list[Extremes]:
         """Return those of every quantity; result: gives numbers (machines,) the form in which they are shown."""
         high, high_at, low, low_at = (map(result, part) for part in self)
-        return [Extremes(*pair) for pair in zip(map(Extreme, high, high_at), map(Extreme, low, low_at))]
+        return [
+            Extremes(*pair) for pair in zip(map(Extreme, high, high_at), map(Extreme, low, low_at))
+        ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +118,9 @@ class Pieces:
         eighths = np.arange(0.0, cycle + 1, 45.0)
         machine = np.append(np.repeat(np.arange(count), len(eighths)), breaks.machine)
         degrees = np.append(np.tile(eighths, count), np.mod(breaks.degrees, cycle))
-        between = np.append(np.tile(eighths % 90 == 45, count), np.zeros(len(breaks.degrees), dtype=bool))
+        between = np.append(
+            np.tile(eighths % 90 == 45, count), np.zeros(len(breaks.degrees), dtype=bool)
+        )
         order = np.lexsort((degrees, machine))
         machine, degrees, spare = machine[order], degrees[order], between[order]
         # between the right angles only where a piece would be too wide
@@ -122,7 +129,15 @@ class Pieces:
         width = np.append(np.diff(degrees), 0.0)
         kept = np.flatnonzero(width > _NO_WIDTH)
         right_angle = 90.0 * np.rint((degrees[kept] + width[kept] / 2) / 90.0)
-        return cls(right_angle, degrees[kept] - right_angle, width[kept] / 2, machine[kept], count, cycle, rule(nodes))
+        return cls(
+            right_angle,
+            degrees[kept] - right_angle,
+            width[kept] / 2,
+            machine[kept],
+            count,
+            cycle,
+            rule(nodes),
+        )
 
     def split(self, at: Angles) -> Pieces:
         """Return these pieces cut at more angles."""
@@ -151,14 +166,20 @@ class Pieces:
         behind = self.of(later)
         right_angle = 90.0 * np.rint((self.middle - behind) / 90.0)
         # differences of right angles are exact
-        return replace(self, right_angle=right_angle, offset=(self.right_angle - right_angle - behind) + self.offset)
+        return replace(
+            self,
+            right_angle=right_angle,
+            offset=(self.right_angle - right_angle - behind) + self.offset,
+        )
 
     def parted(self, parts: Indices) -> Pieces:
         """Return every piece cut into so many equal parts, (pieces,), in order."""
         row = np.repeat(np.arange(len(parts)), parts)
         number = np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)
         cut = self.taken(row)
-        return replace(cut, offset=cut.offset + 2 * cut.half * number / parts[row], half=cut.half / parts[row])
+        return replace(
+            cut, offset=cut.offset + 2 * cut.half * number / parts[row], half=cut.half / parts[row]
+        )
 
     # positions
 
@@ -217,7 +238,12 @@ class Pieces:
     def holding(self, machine: Indices, degrees: Array) -> Indices:
         """Return the pieces (n,) that hold angles (n,) in degrees of these machines, or begin there."""
         keys = self.machine * (2 * self.cycle) + self.low
-        found = np.searchsorted(keys, machine * (2 * self.cycle) + np.mod(degrees, self.cycle), side="right") - 1
+        found = (
+            np.searchsorted(
+                keys, machine * (2 * self.cycle) + np.mod(degrees, self.cycle), side="right"
+            )
+            - 1
+        )
         return np.maximum(found, self.first[machine])
 
     def kept_of(self, others: Pieces) -> tuple[Indices, Indices]:
@@ -231,11 +257,15 @@ class Pieces:
 
     def largest(self, values: Array) -> Array:
         """Return the largest magnitude (…, machines) of samples (…, nodes, pieces)."""
-        return np.maximum.reduceat(np.maximum(values.max(axis=-2), -values.min(axis=-2)), self.first, axis=-1)
+        return np.maximum.reduceat(
+            np.maximum(values.max(axis=-2), -values.min(axis=-2)), self.first, axis=-1
+        )
 
     def integral(self, values: Array) -> Array:
         """Return ∫ value dφ (φ in radians) over the cycle, (…, machines)."""
-        return np.add.reduceat(np.radians(self.half) * (self.rule.weights @ values), self.first, axis=-1)
+        return np.add.reduceat(
+            np.radians(self.half) * (self.rule.weights @ values), self.first, axis=-1
+        )
 
     def mean(self, values: Array) -> Array:
         """Return the means over the cycle, (…, machines)."""
@@ -259,21 +289,35 @@ class Pieces:
         behind = self.of(later)
         row = source.holding(self.machine, self.middle - behind)
         # differences of right angles are exact
-        from_low = (self.right_angle - source.right_angle[row] - behind) + (self.offset - source.offset[row])
-        from_low = from_low - source.cycle * np.rint((from_low + self.half - source.half[row]) / source.cycle)
+        from_low = (self.right_angle - source.right_angle[row] - behind) + (
+            self.offset - source.offset[row]
+        )
+        from_low = from_low - source.cycle * np.rint(
+            (from_low + self.half - source.half[row]) / source.cycle
+        )
         width = source.half[row]
-        whole = (np.abs(from_low) < _NO_WIDTH) & (np.abs(self.half - width) < _NO_WIDTH) & (self.rule is source.rule)
+        whole = (
+            (np.abs(from_low) < _NO_WIDTH)
+            & (np.abs(self.half - width) < _NO_WIDTH)
+            & (self.rule is source.rule)
+        )
         found = np.empty((*values.shape[:-2], *self.degrees.shape))
         if whole.any():
             found[..., whole] = values[..., row[whole]]
-        for part in np.split(np.flatnonzero(~whole), range(_AT_ONCE, np.count_nonzero(~whole), _AT_ONCE)):
+        for part in np.split(
+            np.flatnonzero(~whole), range(_AT_ONCE, np.count_nonzero(~whole), _AT_ONCE)
+        ):
             series = np.moveaxis(source.rule.series @ values[..., row[part]], -2, 0)[..., None, :]
-            places = (from_low[part] + self.half[part] * (1 + self.rule.nodes[:, None])) / width[part] - 1
+            places = (from_low[part] + self.half[part] * (1 + self.rule.nodes[:, None])) / width[
+                part
+            ] - 1
             own = np.broadcast_to(np.clip(places, -1, 1), (*values.shape[:-2], *places.shape))
             found[..., part] = series_at(series, own)
         return found
 
-    def at(self, values: Array, machine: Indices, degrees: Array, within: Array | None = None) -> Array:
+    def at(
+        self, values: Array, machine: Indices, degrees: Array, within: Array | None = None
+    ) -> Array:
         """Return values (n,) at angles (n,) in degrees of these machines.
 
         At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
@@ -282,7 +326,9 @@ class Pieces:
         row = self.holding(machine, degrees + side)
         from_low = degrees - self.right_angle[row] - self.offset[row]
         from_low = from_low - self.cycle * np.rint((from_low - self.half[row]) / self.cycle)
-        return series_at((self.rule.series @ values)[:, row], np.clip(from_low / self.half[row] - 1, -1, 1))
+        return series_at(
+            (self.rule.series @ values)[:, row], np.clip(from_low / self.half[row] - 1, -1, 1)
+        )
 
     def zeros(self, values: Array, size: Array | None = None) -> Angles:
         """Return where values (nodes, pieces) change sign, by a jump as well, within [0, cycle).
@@ -298,7 +344,9 @@ class Pieces:
         order = np.lexsort((degrees, machine))
         machine, degrees = machine[order], degrees[order]
         # near a break rounding may cross several times: an odd number of crossings is one, an even number none
-        begins = np.append(True, (np.diff(degrees) > _SAME) | (np.diff(machine) > 0))[: len(degrees)]
+        begins = np.append(True, (np.diff(degrees) > _SAME) | (np.diff(machine) > 0))[
+            : len(degrees)
+        ]
         odd = np.bincount(np.cumsum(begins) - 1) % 2 == 1 if len(degrees) else begins
         return Angles(machine[begins][odd], degrees[begins][odd])
 
@@ -329,10 +377,14 @@ class Pieces:
         over = ranges[1] - ranges[0]
         may = [top + over >= (one - slack)[:, self.machine] for top, one in zip(tops, best)]
         which, piece = _where(np.logical_or.reduce(may))
-        samples = np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
+        samples = np.concatenate(
+            [one[:, piece[which == q]] for q, one in enumerate(values)], axis=1
+        )
         # by less, too, than one sample differs from the next
         steps, owner = np.abs(np.diff(samples, axis=0)).max(axis=0), self.machine[piece]
-        may = [top[which, piece] + steps >= (one - slack)[which, owner] for top, one in zip(tops, best)]
+        may = [
+            top[which, piece] + steps >= (one - slack)[which, owner] for top, one in zip(tops, best)
+        ]
         near = np.flatnonzero(np.logical_or.reduce(may))
         which, piece, samples, owner = which[near], piece[near], samples[:, near], owner[near]
         straight = _STRAIGHT * size[which, owner]
@@ -349,7 +401,10 @@ class Pieces:
         degrees = np.concatenate((self.low[piece], self.high[piece], self._at(piece[rows], places)))
         cell = which * self.count + owner
         cell = np.concatenate((cell, cell, cell[rows]))
-        return [_first_summits(cell, degrees, sign * value, one, slack) for sign, one in zip(signs, best)]
+        return [
+            _first_summits(cell, degrees, sign * value, one, slack)
+            for sign, one in zip(signs, best)
+        ]
 
     def _at(self, rows: Indices, places: Array) -> Array:
         """Return the angles in degrees at places in [−1, 1] of these pieces."""
@@ -379,11 +434,17 @@ def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
         degrees += [starts + turn for turn in np.arange(0.0, cycle, one.cycle)]
         machine += [one.machine] * (len(degrees) - len(machine))
     nodes = max(len(one.rule.nodes) for one, _ in parts)
-    return Pieces.between(Angles(np.concatenate(machine), np.concatenate(degrees)), first.count, cycle, nodes)
+    return Pieces.between(
+        Angles(np.concatenate(machine), np.concatenate(degrees)), first.count, cycle, nodes
+    )
 
 
 def resolved(
-    pieces: Pieces, parts: Array, kinks: Array, size: Array, function: Callable[[Pieces, Array], Samples]
+    pieces: Pieces,
+    parts: Array,
+    kinks: Array,
+    size: Array,
+    function: Callable[[Pieces, Array], Samples],
 ) -> tuple[Pieces, Samples, Array]:
     """Return pieces on which functions with kinks, such as magnitudes of the parts, are polynomials.
 
@@ -405,7 +466,9 @@ def refined(pieces: Pieces, sample: Sample, judged: int | None = None) -> tuple[
     return _halved_until_smooth(pieces, lambda some, _: sample(some), nothing, judged=judged)[:2]
 
 
-def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Samples]) -> tuple[Array, Array]:
+def highest(
+    pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Samples]
+) -> tuple[Array, Array]:
     """Return the largest values of functions ≥ 0 of the parts, and the first angles in degrees, each (q, machines).
 
     parts: (p, nodes, pieces), with polynomials on the pieces. Only pieces that may hold the largest value are halved.
@@ -417,7 +480,7 @@ def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Sa
 
 def _ranges(values: Samples) -> Array:
     """Return the smallest and the largest samples of quantities on every piece, (2, q, pieces)."""
-    return np.array([[edge(one, axis=0) for one in values] for edge in (np.min, np.max)])
+    return np.array([[edge(value, axis=0) for value in values] for edge in (np.min, np.max)])
 
 
 def _halved_until_smooth(
@@ -437,7 +500,10 @@ def _halved_until_smooth(
         values = function(todo, parts)
         tested = values[:judged]
         low, high = _ranges(tested)
-        top, first = np.zeros((len(tested), pieces.count)), np.flatnonzero(np.diff(todo.machine, prepend=-1))
+        top, first = (
+            np.zeros((len(tested), pieces.count)),
+            np.flatnonzero(np.diff(todo.machine, prepend=-1)),
+        )
         top[:, todo.machine[first]] = np.maximum.reduceat(np.maximum(high, -low), first, axis=-1)
         size = np.maximum(size, top)
         may = np.True_
@@ -445,7 +511,7 @@ def _halved_until_smooth(
             may = ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
             some = may.any(axis=0)
             todo, may, parts = todo.taken(some), may[:, some], parts[..., some]
-            values = tested = [one[:, some] for one in values]
+            values = tested = [value[:, some] for value in values]
         # a crowd of rough pieces that halving does not thin out is noise
         tails = may * np.array([np.abs(todo.rule.series[-2:] @ one).max(axis=0) for one in tested])
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -459,14 +525,16 @@ def _halved_until_smooth(
         if not rough.any():
             break
         nodes, halved = len(pieces.rule.nodes), 2 * np.count_nonzero(rough)
-        halves = (pieces.rule.halving @ parts[..., rough]).reshape(len(parts), 2, nodes, halved // 2)
+        halves = (pieces.rule.halving @ parts[..., rough]).reshape(
+            len(parts), 2, nodes, halved // 2
+        )
         parts = halves.transpose(0, 2, 3, 1).reshape(len(parts), nodes, halved)
         todo = todo.halved(rough)
-    whole, both = joined(done)
+    whole, both = joined_pieces(done)
     return whole, both[: len(values)], both[len(values) :]
 
 
-def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pieces, Array]:
+def joined_pieces(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pieces, Array]:
     """Return pieces that together fill the cycles as one row, in order, and samples of quantities (q, …, pieces) there.
 
     parts: pieces, which of them are taken, and the samples of each quantity on all of them.
@@ -475,17 +543,23 @@ def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pi
     columns = [(one.right_angle, one.offset, one.half, one.machine) for one in taken]
     right_angle, offset, half, machine = (np.concatenate(column) for column in zip(*columns))
     order = np.lexsort((offset, right_angle, machine))
-    whole = replace(taken[0], right_angle=right_angle, offset=offset, half=half, machine=machine).taken(order)
+    whole = replace(
+        taken[0], right_angle=right_angle, offset=offset, half=half, machine=machine
+    ).taken(order)
     before = np.cumsum([0, *(len(pieces.half) for pieces, _, _ in parts)])
     source = np.concatenate([rows + passed for (_, rows, _), passed in zip(parts, before)])[order]
     values = [part for _, _, part in parts]
     found = np.empty((len(values[0]), *values[0][0].shape[:-1], len(order)))
     for quantity, each in zip(found, zip(*values)):
-        np.take(np.concatenate(each, axis=-1), source, axis=-1, out=quantity, mode="clip")  # without a buffer
+        np.take(
+            np.concatenate(each, axis=-1), source, axis=-1, out=quantity, mode="clip"
+        )  # without a buffer
     return whole, found
 
 
-def _first_summits(cell: Indices, degrees: Array, value: Array, best: Array, slack: Array) -> tuple[Array, Array]:
+def _first_summits(
+    cell: Indices, degrees: Array, value: Array, best: Array, slack: Array
+) -> tuple[Array, Array]:
     """Return the largest values (q, machines) and the angles of the first summits that reach them but for the slack.
 
     best: the largest samples; value: of more places (n,), each of a quantity and machine by its place in `best`.
@@ -509,7 +583,9 @@ def _turning_points(values: Array, of: LobattoRule) -> tuple[Indices, Array, Arr
     slopes = of.scan_slope @ values
     i, rows = _where((slopes[1:] < 0) != (slopes[:-1] < 0))
     series = of.series @ values[:, rows]
-    places = _roots(of.slope @ series, of.places[i], of.places[i + 1], slopes[i, rows], slopes[i + 1, rows])
+    places = _roots(
+        of.slope @ series, of.places[i], of.places[i + 1], slopes[i, rows], slopes[i + 1, rows]
+    )
     return rows, places, series_at(series, places)
 
 
@@ -532,7 +608,10 @@ def _crossings(values: Array, of: LobattoRule, tiny: Array) -> tuple[Indices, Ar
     there |= ~below[before, owner] & ~below[before + 1, owner] & (value < tiny[owner])
     owner, turns, value, before = owner[there], turns[there], value[there], before[there]
     rows = np.concatenate((rows, owner, owner))
-    low, high = np.concatenate((low, of.places[before], turns)), np.concatenate((high, turns, of.places[before + 1]))
+    low, high = (
+        np.concatenate((low, of.places[before], turns)),
+        np.concatenate((high, turns, of.places[before + 1])),
+    )
     first = np.concatenate((first, fine[before, owner], value))
     last = np.concatenate((last, value, fine[before + 1, owner]))
     return some[rows], _roots(of.series @ values[:, rows], low, high, first, last)
@@ -548,5 +627,10 @@ def _roots(series: Array, low: Array, high: Array, first: Array, last: Array) ->
     both = np.zeros((len(series), 2, len(low)))
     both[:, 0], both[:-1, 1] = series, slope_of_series(len(series)) @ series
     return bracketed_roots(
-        lambda at: series_at(both, np.broadcast_to(at, (2, len(at)))), low, high, first, last, _SETTLED
+        lambda at: series_at(both, np.broadcast_to(at, (2, len(at)))),
+        low,
+        high,
+        first,
+        last,
+        _SETTLED,
     )

@@ -39,10 +39,10 @@ _CLOSE = 1e-12
 _EQUAL = 1e-14
 """Relative difference of values that differ only by rounding."""
 
-Function = Callable[[Array], Array]
+RealFunction = Callable[[Array], Array]
 
 
-def roots(function: Function) -> tuple[Array, Flags]:
+def roots(function: RealFunction) -> tuple[Array, Flags]:
     """Return all places (n,) in the interval where a function changes sign, in order, and whether it jumps there.
 
     Roots closer together than 1/64 may be missed where the function looks smooth between the samples.
@@ -54,7 +54,11 @@ def roots(function: Function) -> tuple[Array, Flags]:
     if not len(passed):
         return at_samples, np.zeros(len(at_samples), dtype=bool)
     found = _closed(
-        lambda places: np.nan_to_num(function(places[:, None])), x[passed], x[passed + 1], y[passed], y[passed + 1]
+        lambda places: np.nan_to_num(function(places[:, None])),
+        x[passed],
+        x[passed + 1],
+        y[passed],
+        y[passed + 1],
     )
     left = function(found[:, None])
     there = np.isfinite(left)
@@ -63,7 +67,7 @@ def roots(function: Function) -> tuple[Array, Flags]:
     return every[order], np.append(np.zeros(len(at_samples), dtype=bool), jumps)[order]
 
 
-def _closed(function: Function, low: Array, high: Array, f_low: Array, f_high: Array) -> Array:
+def _closed(function: RealFunction, low: Array, high: Array, f_low: Array, f_high: Array) -> Array:
     """Return a root in each bracket (n,): inverse quadratic steps where they are safe, else halves (Chandrupatla)."""
     a, b, fa, fb = high, low, f_high, f_low
     part = np.full_like(a, 0.5)
@@ -80,13 +84,15 @@ def _closed(function: Function, low: Array, high: Array, f_low: Array, f_high: A
         a, fa = middle, f_middle
         with np.errstate(all="ignore"):
             xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
-            step = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+            step = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (
+                fc - fb
+            )
         safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi) & np.isfinite(step)
         part = np.where(safe, np.clip(step, 0.0, 1.0), 0.5)
     return np.where(np.abs(fa) < np.abs(fb), a, b)
 
 
-def _sampled(function: Function) -> tuple[Array, Array]:
+def _sampled(function: RealFunction) -> tuple[Array, Array]:
     """Return places (n,) and values (n,): dense where the function bends, and near the ends of its domain."""
     x = np.linspace(0.0, 1.0, _PLACES)
     y = function(x[:, None])
@@ -111,24 +117,31 @@ def _to_halve(x: Array, y: Array) -> Indices:
         if one != other:
             weights[one] *= (x[2:-2] - nodes[other]) / (nodes[one] - nodes[other])
     cubic = (weights * np.stack([y[:-4], y[1:-3], y[3:-1], y[4:]])).sum(axis=0)
-    spread, size = np.nanmax(y, initial=-np.inf) - np.nanmin(y, initial=np.inf), np.nanmax(np.abs(y), initial=0.0)
+    spread, size = (
+        np.nanmax(y, initial=-np.inf) - np.nanmin(y, initial=np.inf),
+        np.nanmax(np.abs(y), initial=0.0),
+    )
     bent = np.zeros(len(x), dtype=bool)
     bent[2:-2] = np.abs(y[2:-2] - cubic) > _LEAVES * spread + _ROUNDING * size
 
     near, before, after = y[1:-1], y[:-2], y[2:]
-    dips = (near * before > 0) & (near * after > 0) & (np.abs(near) <= np.minimum(np.abs(before), np.abs(after)))
+    dips = (
+        (near * before > 0)
+        & (near * after > 0)
+        & (np.abs(near) <= np.minimum(np.abs(before), np.abs(after)))
+    )
     bent[1:-1] |= dips & (np.abs(near) < np.maximum(np.abs(before - near), np.abs(after - near)))
     return np.flatnonzero((bent[:-1] | bent[1:]) & (np.diff(x) > _NARROWEST))
 
 
-def _joined(x: Array, y: Array, more: Array, function: Function) -> tuple[Array, Array]:
+def _joined(x: Array, y: Array, more: Array, function: RealFunction) -> tuple[Array, Array]:
     """Return samples with those at more places, in order."""
     x, y = np.append(x, more), np.append(y, function(more[:, None]))
     order = np.argsort(x)
     return x[order], y[order]
 
 
-def common_roots(functions: Function) -> Array:
+def common_roots(functions: RealFunction) -> Array:
     """Return the places (n, 2) in the unit square at which both of two functions are zero; functions: gives (n, 2).
 
     Newton's method starts in every cell of a grid of 16 a side in which both may be zero.
@@ -136,10 +149,14 @@ def common_roots(functions: Function) -> Array:
     side = np.linspace(0.0, 1.0, _SIDE)
     grid = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1)
     values = functions(grid.reshape(-1, 2)).reshape(_SIDE, _SIDE, 2)
-    corners = np.stack([values[i : _SIDE - 1 + i, j : _SIDE - 1 + j] for i, j in product((0, 1), repeat=2)])
+    corners = np.stack(
+        [values[i : _SIDE - 1 + i, j : _SIDE - 1 + j] for i, j in product((0, 1), repeat=2)]
+    )
     low, high = corners.min(axis=0), corners.max(axis=0)
     slack = (high - low) / 2  # zero may be passed between the corners
-    starts = ((low - slack <= 0) & (high + slack >= 0)).all(axis=-1)  # false where a corner has no value
+    starts = ((low - slack <= 0) & (high + slack >= 0)).all(
+        axis=-1
+    )  # false where a corner has no value
     places = grid[:-1, :-1][starts] + side[1] / 2
     spread = np.nanmax(np.abs(values), axis=(0, 1), initial=0.0)
     left = np.full(places.shape, np.nan)
@@ -163,19 +180,24 @@ def common_roots(functions: Function) -> Array:
     return np.array(kept).reshape(-1, 2)
 
 
-def _slopes(functions: Function, places: Array) -> tuple[Array, Array]:
+def _slopes(functions: RealFunction, places: Array) -> tuple[Array, Array]:
     """Return two functions (n, 2) and their slopes (n, functions, places) by central differences."""
     step = 1e-6
-    moved = [np.clip(places + sign * step * np.eye(2)[axis], 0.0, 1.0) for axis in (0, 1) for sign in (1, -1)]
+    moved = [
+        np.clip(places + sign * step * np.eye(2)[axis], 0.0, 1.0)
+        for axis in (0, 1)
+        for sign in (1, -1)
+    ]
     values = functions(np.concatenate([places, *moved])).reshape(5, -1, 2)
     columns = [
-        (values[1 + 2 * axis] - values[2 + 2 * axis]) / (moved[2 * axis] - moved[2 * axis + 1])[:, axis, None]
+        (values[1 + 2 * axis] - values[2 + 2 * axis])
+        / (moved[2 * axis] - moved[2 * axis + 1])[:, axis, None]
         for axis in (0, 1)
     ]
     return values[0], np.stack(columns, axis=-1)
 
 
-def lowest(function: Function, sides: int) -> tuple[Array, float]:
+def lowest(function: RealFunction, sides: int) -> tuple[Array, float]:
     """Return the place (sides,) of the lowest value of a function over an interval or a square, and that value.
 
     A value is inf or nan where it does not count; so is the value returned where none counts. Grids shrink round the
@@ -186,7 +208,10 @@ def lowest(function: Function, sides: int) -> tuple[Array, float]:
     grid = np.stack(np.meshgrid(*[side] * sides, indexing="ij"), axis=-1)
     cost: Array = _cost(function, grid.reshape(-1, sides)).reshape(grid.shape[:-1])
     around = np.pad(cost, 1, constant_values=np.inf)
-    shifts = [tuple(slice(1 + d, 1 + d + len(side)) for d in shift) for shift in product((-1, 0, 1), repeat=sides)]
+    shifts = [
+        tuple(slice(1 + d, 1 + d + len(side)) for d in shift)
+        for shift in product((-1, 0, 1), repeat=sides)
+    ]
     valleys = np.isfinite(cost) & (cost <= np.min([around[shift] for shift in shifts], axis=0))
     centres = grid[valleys][np.argsort(cost[valleys], kind="stable")[:_CANDIDATES]]
     if not len(centres):
@@ -200,16 +225,24 @@ def lowest(function: Function, sides: int) -> tuple[Array, float]:
         places = np.clip(centres[:, None] + offsets @ axes, 0.0, 1.0)
         cost = _cost(function, places.reshape(-1, sides)).reshape(len(centres), -1)
         order = np.argsort(cost, axis=1, kind="stable")[:, :few]
-        low, near = (np.take_along_axis(cost, order, axis=1), np.take_along_axis(places, order[..., None], axis=1))
+        low, near = (
+            np.take_along_axis(cost, order, axis=1),
+            np.take_along_axis(places, order[..., None], axis=1),
+        )
         lower = low[:, 0] < values
         edge = (np.abs(offsets[order[:, 0]]) == 1).any(axis=1) & lower
-        centres, values = np.where(lower[:, None], near[:, 0], centres), np.where(lower, low[:, 0], values)
+        centres, values = (
+            np.where(lower[:, None], near[:, 0], centres),
+            np.where(lower, low[:, 0], values),
+        )
         kept, share = np.where(edge, 1.0, 0.0), np.where(lower, 1.0, 0.7)
         axes = kept[:, None, None] * axes + share[:, None, None] * _spread(near, low, centres)
         alike = low[:, -1] - values <= _EQUAL * np.abs(values)
         if (alike | (np.abs(axes).max(axis=(1, 2)) < _CLOSE)).all():
             break
-        rivals = values <= values.min() + np.ptp(np.where(np.isfinite(cost), cost, values[:, None]), axis=1)
+        rivals = values <= values.min() + np.ptp(
+            np.where(np.isfinite(cost), cost, values[:, None]), axis=1
+        )
         centres, values, axes = centres[rivals], values[rivals], axes[rivals]
     first = int(np.argmin(values))
     return centres[first], float(values[first])
@@ -223,7 +256,7 @@ def _spread(near: Array, low: Array, centres: Array) -> Array:
     return np.maximum(sizes, _THIN * sizes[:, -1:])[..., None] * np.swapaxes(directions, 1, 2)
 
 
-def _cost(function: Function, places: Array) -> Array:
+def _cost(function: RealFunction, places: Array) -> Array:
     values = function(places)
     return np.where(np.isnan(values), np.inf, values)
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from kurbel.checks.limits import compared, name_of
+from kurbel.checks.limits import compared_entries, name_of
 from kurbel.declared.unit_systems import convert, show, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine, firings
@@ -17,10 +17,10 @@ from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.several import intervals
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import Extreme, number_of
-from kurbel.pictures.picture import Fact, Facts, Grid, Item, Notice, Shown
+from kurbel.pictures.picture import Fact, Facts, FactValue, Grid, Notice, SectionItem
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
-from kurbel.tables.frame import Places, Row, Subject
+from kurbel.tables.frame import PlaceRow, Places, Subject
 from kurbel.tables.tables import grouped, together
 
 Thing = TypeVar("Thing")
@@ -53,7 +53,10 @@ _LABELS = {
     },
     "bearings": {"load_max": "Largest bearing load"},
     "stress": {"safety_pin_min": "Safety of the crank pin"},
-    "balance": {"F_free_max": "Largest unbalanced force", "M_free_max": "Largest unbalanced moment"},
+    "balance": {
+        "F_free_max": "Largest unbalanced force",
+        "M_free_max": "Largest unbalanced moment",
+    },
     "torsion": {
         "natural_frequency": "Natural frequency",
         "M_vibratory": "Vibratory torque",
@@ -98,7 +101,7 @@ _CLAUSE = re.compile(r"[:;,(]| over the cycle")
 """End of the first words of a sentence, which name the quantity."""
 
 
-def kind_of(case: Case) -> str:
+def machine_kind(case: Case) -> str:
     """Return the kind of a machine, which decides the key values on the first page."""
     machine = case.machine
     if not machine.cylinders:
@@ -108,12 +111,17 @@ def kind_of(case: Case) -> str:
         return "linkage"
     if first.mechanism.quick_return or first.ram_force:
         return "ram"
-    chambers = [chamber for one in machine.cylinders for piston in one.pistons for chamber in piston.chambers.values()]
+    chambers = [
+        chamber
+        for cylinder in machine.cylinders
+        for piston in cylinder.pistons
+        for chamber in piston.chambers.values()
+    ]
     if not chambers:
         return "masses"
     if firings(machine):
         return "engine"
-    drives = any(one.drive.drives for one in case.cylinders)
+    drives = any(cylinder.drive.drives for cylinder in case.cylinders)
     if drives or any(isinstance(one, Steam) for one in chambers):
         return "steam engine"
     try:
@@ -125,18 +133,24 @@ def kind_of(case: Case) -> str:
 def subtitle_of(machine: Machine) -> str:
     """Return number of cylinders, cycle, speed, stroke, rod and bores in a line."""
     cylinders, texts = machine.cylinders, list[str]()
-    mechanisms = [one.mechanism for one in cylinders]
-    if any(one.slides and not one.quick_return for one in mechanisms):  # else no piston moves
+    mechanisms = [cylinder.mechanism for cylinder in cylinders]
+    if any(
+        mechanism.slides and not mechanism.quick_return for mechanism in mechanisms
+    ):  # else no piston moves
         texts.append(f"{len(cylinders)} cylinder{'s' * (len(cylinders) > 1)}")
     texts += [machine.cycle] if firings(machine) else []
     texts += [] if machine.speed is None else [show(machine.speed, "speed", 4)]
     sizes = {
-        "stroke": [one.stroke for one in mechanisms if one.slides and not one.turns],
-        "rod": [one.rod for one in mechanisms if isinstance(one, SliderCrank)],
-        "bore": [piston.bore for one in cylinders for piston in one.pistons],
+        "stroke": [
+            mechanism.stroke for mechanism in mechanisms if mechanism.slides and not mechanism.turns
+        ],
+        "rod": [mechanism.rod for mechanism in mechanisms if isinstance(mechanism, SliderCrank)],
+        "bore": [piston.bore for cylinder in cylinders for piston in cylinder.pistons],
     }
     for name, lengths in sizes.items():
-        shown = dict.fromkeys(show(float(one), "length", 4) for one in lengths if math.isfinite(one))
+        shown = dict.fromkeys(
+            show(float(length), "length", 4) for length in lengths if math.isfinite(length)
+        )
         texts += [f"{name} {', '.join(shown)}"] if shown else []
     return ", ".join(texts)
 
@@ -148,7 +162,7 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Fact]:
     Of several parts the one with the largest value is named, or with the smallest for those of `_SMALLEST`; a key value
     of the whole machine is taken from there.
     """
-    kind = kind_of(case)
+    kind = machine_kind(case)
     wanted = tuple(ids) or (*_KINDS[kind].split(), *_USUAL.split())
     known: dict[str, Fact] = {}
     for command, labels in _LABELS.items():
@@ -157,7 +171,9 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Fact]:
             if id in wanted and (one := _largest(id, command, subjects)):
                 known[id] = one
     # against the rotation, as that of a pump or a compressor
-    against = {"M_max", "M_min"} <= set(known) and abs(known["M_min"].value) > abs(known["M_max"].value)
+    against = {"M_max", "M_min"} <= set(known) and abs(known["M_min"].value) > abs(
+        known["M_max"].value
+    )
     if against and not ids and kind != "effort":
         wanted = tuple("M_min" if id == "M_max" else id for id in wanted)
     titles = {"P_peak": "Largest ram force"} if kind == "ram" else {}
@@ -173,13 +189,13 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Fact]:
 
 def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Fact | None:
     each: list[Fact] = []
-    for one in subjects:
-        quantity = one.lists.key_values(command).get(id)
+    for subject in subjects:
+        quantity = subject.lists.key_values(command).get(id)
         with suppress(KurbelError):
-            value = one.answer(quantity) if quantity and one.is_printed(quantity) else None
+            value = subject.answer(quantity) if quantity and subject.is_printed(quantity) else None
             if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
                 degrees = value.degrees if isinstance(value, Extreme) else None
-                each.append(Fact(_LABELS[command][id], number, quantity, one.name, degrees))
+                each.append(Fact(_LABELS[command][id], number, quantity, subject.name, degrees))
     if not each:
         return None
     whole = [one for one in each if one.where == "whole machine"]
@@ -191,9 +207,13 @@ def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Fact | None:
 def tiles(facts: Iterable[Fact], system: str) -> Facts:
     """Return key values for display as tiles, each in its unit."""
     found = []
-    for one in facts:
-        unit, kind = shown_unit(one.quantity.kind, system, abs(one.value)), one.quantity.kind
-        found.append(one._replace(value=float(convert(one.value, kind, unit)), unit=one.quantity.marked(unit)))
+    for fact in facts:
+        unit, kind = shown_unit(fact.quantity.kind, system, abs(fact.value)), fact.quantity.kind
+        found.append(
+            fact._replace(
+                value=float(convert(fact.value, kind, unit)), unit=fact.quantity.marked(unit)
+            )
+        )
     return Facts(tuple(found))
 
 
@@ -205,15 +225,19 @@ def if_any(found: Callable[[], Iterable[Thing]]) -> list[Thing]:
         return []
 
 
-def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[str]) -> Iterator[Item]:
+def first_page(
+    case: Case, cases: Sequence[Case], system: str, warnings: Iterable[str]
+) -> Iterator[SectionItem]:
     """Yield the most informative key values, limits and expectations with their verdicts, load cases, and warnings."""
     facts = facts_of(case)
     yield tiles(facts.values(), system)
-    yield from verdicts(case, cases)
+    yield from limit_verdicts(case, cases)
     if cases:
-        rows: list[Row] = []
+        rows: list[PlaceRow] = []
         for one in cases:
-            rows.append(((name_of(one),), {id: found.value for id, found in facts_of(one, facts).items()}))
+            rows.append(
+                ((name_of(one),), {id: found.value for id, found in facts_of(one, facts).items()})
+            )
         declared = {id: one.quantity for id, one in facts.items()}
         yield Places("cases", "Load cases", ("case",), declared, rows, headed=True).shown(system)
     yield from (Notice(text, "warning") for text in warnings)
@@ -221,15 +245,22 @@ def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[s
         yield Notice("No warnings.", "good")
 
 
-def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
+def limit_verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[SectionItem]:
     """Yield limits and expectations with their bounds and verdicts, and why some cannot be compared."""
-    judged, rows, marks = compared(case, cases), list[tuple[Shown, ...]](), list[str]()
-    for equal in grouped((one for one in judged if one.bound), lambda one: (one.path, one.where, one.bound)):
+    judged, rows, marks = compared_entries(case, cases), list[tuple[FactValue, ...]](), list[str]()
+    for equal in grouped(
+        (one for one in judged if one.bound), lambda one: (one.path, one.where, one.bound)
+    ):
         # in several load cases all that fail, or the one that is nearest to its bound
-        nearest = (min if equal[0].bound.startswith("≥") else max)(equal, key=lambda one: one.value or 0.0)
+        nearest = (min if equal[0].bound.startswith("≥") else max)(
+            equal, key=lambda one: one.value or 0.0
+        )
         for one in [one for one in equal if one.severity == "error"] or [nearest]:
             bad, of = one.severity == "error", one.quantity
-            value, where = (one.value or 0.0, one.unit), one.where + one.what.removeprefix(str(one.path[-1]))
+            value, where = (
+                (one.value or 0.0, one.unit),
+                one.where + one.what.removeprefix(str(one.path[-1])),
+            )
             symbol, text = (of.symbol, _CLAUSE.split(of.text)[0]) if of else ("", one.what)
             rows.append((symbol, value, one.bound, "FAIL" if bad else "PASS", text, where))
             marks.append("bad" if bad else "good")
@@ -238,7 +269,11 @@ def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
         heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"
         yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
     yield from (Notice(str(one.error), "bad") for one in judged if one.error)
-    yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not (one.bound or one.error))
+    yield from (
+        Notice(f"{one.what}: {one.text}", "warning")
+        for one in judged
+        if not (one.bound or one.error)
+    )
 
 
 def firing_order(machine: Machine) -> Iterator[Grid]:
@@ -250,4 +285,6 @@ def firing_order(machine: Machine) -> Iterator[Grid]:
         (machine.cylinders[number - 1].name, f"{angle:g}°", f"{after:g}°")
         for (angle, number), after in zip(found, intervals([angle for angle, _ in found], cycle))
     )
-    yield Grid("Firing order", ("Cylinder", "Fires at", "Interval to the next"), rows, numbers=(1, 2))
+    yield Grid(
+        "Firing order", ("Cylinder", "Fires at", "Interval to the next"), rows, numbers=(1, 2)
+    )

@@ -14,8 +14,26 @@ from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.notes.warnings import of_machine
 from kurbel.numerics.extreme import number_of, size_of
-from kurbel.page.summary import facts_of, firing_order, if_any, subtitle_of, summary, verdicts
-from kurbel.pictures.picture import Answers, Document, Grid, Item, Notice, OverAngle, Pair, Picture, Section, Shown
+from kurbel.page.summary import (
+    facts_of,
+    firing_order,
+    first_page,
+    if_any,
+    limit_verdicts,
+    subtitle_of,
+)
+from kurbel.pictures.picture import (
+    Document,
+    FactValue,
+    Grid,
+    Notice,
+    OverAngle,
+    Pair,
+    Picture,
+    ReportAnswers,
+    Section,
+    SectionItem,
+)
 from kurbel.pictures.picture_source import PictureOptions
 from kurbel.pictures.pictures import PICTURES, PictureKind, pictures_if_any
 from kurbel.quantities import every_quantity
@@ -27,22 +45,27 @@ from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
 from kurbel.tables.frame import Frame, Subject, provenance
 from kurbel.tables.tables import Report, grouped, shown_once, stepped, together
 
-Given = Sequence[tuple[str, str]]
+KeyTexts = Sequence[tuple[str, str]]
 """The keys of a machine file with their values, as they were read."""
-Progress = Callable[[str], None]
+OnStep = Callable[[str], None]
 """Called with what is computed next."""
 _NONE = "–"
 
 
 def _pictures(case: Case, command: str, system: str) -> list[Picture | str]:
     """Return the pictures of the section of a command; without one that of the first page."""
-    return [one for kind in PICTURES if kind.command == command for one in _drawn(case, kind, system)]
+    return [
+        one for kind in PICTURES if kind.command == command for one in _drawn(case, kind, system)
+    ]
 
 
 def _drawn(case: Case, kind: PictureKind, system: str, name: str = "") -> list[Picture | str]:
     """Return one picture of a machine under this name, as often as it has it; without a solution a sentence."""
     try:
-        return [one._replace(machine=name) for one in pictures_if_any(case, kind, PictureOptions(system))]
+        return [
+            one._replace(machine=name)
+            for one in pictures_if_any(case, kind, PictureOptions(system))
+        ]
     except NoSolutionError as error:
         return [f"{kind.title}: {error}"]
 
@@ -52,65 +75,94 @@ def _drawn(case: Case, kind: PictureKind, system: str, name: str = "") -> list[P
 
 @np.errstate(all="ignore")  # what overflows is refused by name
 def whole_report(
-    case: Case, given: Given, system: str, step: float, progress: Progress, cases: Sequence[Case] = ()
+    case: Case,
+    given: KeyTexts,
+    system: str,
+    step: float,
+    progress: OnStep,
+    cases: Sequence[Case] = (),
 ) -> Document:
     """Return the report on a machine: a first page, pictures and tables of each command, energy balance, input.
 
     given: the keys of its file; step: of the tables in degrees; cases: its load cases.
     """
     stepped(step, 360.0)  # an invalid step is rejected at once
-    machine, sections, tables = case.machine, list[Section](), list[Item]()
+    machine, sections, tables = case.machine, list[Section](), list[SectionItem]()
     left_out: dict[tuple[str, str], list[str]] = {}
     warnings = dict.fromkeys(of_machine(case))
     for command in REPORTS:
         progress(command.title.lower())
-        items = list[Item](firing_order(machine) if command.word == "flywheel" else ())
+        items = list[SectionItem](firing_order(machine) if command.word == "flywheel" else ())
         try:
             angles = stepped(step, command.functions.end(case), max(len(case.cylinders), 1))
-            report = shown_once(command.functions.report(case, Frame(command.word, angles, None, system)))
+            report = shown_once(
+                command.functions.report(case, Frame(command.word, angles, None, system))
+            )
         except NoSolutionError as error:
             items.append(f"No solution: {error}")
         except UsageError as error:
             left_out[command.title, str(error).removeprefix(f"{machine.name}: ")] = []
             continue
         else:
-            items.append(Answers(_without_motion(report) if command.word == "forces" else report))
-            tables += [OverAngle(report, command.title)] if any(part.columns for part in report.all_parts) else []
+            items.append(
+                ReportAnswers(_without_motion(report) if command.word == "forces" else report)
+            )
+            tables += (
+                [OverAngle(report, command.title)]
+                if any(part.columns for part in report.all_parts)
+                else []
+            )
             for reason in (reason for part in report.all_parts for reason in part.left_out):
                 left_out.setdefault(reason, []).append(command.title.lower())
             # the warnings of a cylinder lack its name, and are among those of the machine
             warnings |= dict.fromkeys(report.whole.warnings if report.whole else ())
         if cases and command.in_cases:
             with suppress(KurbelError):
-                items.append(Answers(cases_report(machine, cases, command.word, system)))
-        sections.append(Section(command.word, command.title, (*_pictures(case, command.word, system), *items)))
+                items.append(ReportAnswers(cases_report(machine, cases, command.word, system)))
+        sections.append(
+            Section(command.word, command.title, (*_pictures(case, command.word, system), *items))
+        )
 
-    rows = tuple((what, why, ", ".join(dict.fromkeys(where))) for (what, why), where in left_out.items())
+    rows = tuple(
+        (what, why, ", ".join(dict.fromkeys(where))) for (what, why), where in left_out.items()
+    )
     sections += [
         Section("energy", "Energy balance", tuple(_energy(case, system))),
         Section("tables", "Over the crank angle", tuple(tables)),
         Section("left-out", "Left out", (Grid("", ("Part", "Why", "Of"), rows),) if rows else ()),
         Section("input", "Input as understood", tuple(_input(case, given))),
     ]
-    first = (*_pictures(case, "", system)[:1], *summary(case, cases, system, warnings))
-    sections = [one for one in sections if one.items]
-    return Document(machine.name, (subtitle_of(machine),), first, tuple(sections), (provenance(machine),))
+    first = (*_pictures(case, "", system)[:1], *first_page(case, cases, system, warnings))
+    sections = [section for section in sections if section.items]
+    return Document(
+        machine.name, (subtitle_of(machine),), first, tuple(sections), (provenance(machine),)
+    )
 
 
 def _without_motion(report: Report) -> Report:
     """Return the report on forces without the key values that the section on motion has."""
-    own = {one.id for one in every_quantity().all_key_values if one.commands[:1] == ("forces",)}
-    return report.changed(lambda part: part._replace(key_values=tuple(one for one in part.key_values if one.id in own)))
+    own = {
+        key_value.id
+        for key_value in every_quantity().all_key_values
+        if key_value.commands[:1] == ("forces",)
+    }
+    return report.changed(
+        lambda part: part._replace(
+            key_values=tuple(key_value for key_value in part.key_values if key_value.id in own)
+        )
+    )
 
 
-def _input(case: Case, given: Given) -> Iterator[Grid]:
+def _input(case: Case, given: KeyTexts) -> Iterator[Grid]:
     """Yield the keys of the file with their meanings, and the results of a check of the machine."""
     places = every_place()
     if given:
         rows = tuple((path, value, meaning(path, places)) for path, value in given)
         yield Grid("Given", ("Key", "Value", "Meaning"), rows)
     for part in checked(case).shown_once:
-        listed = tuple((one.what, one.text) for one in part.entries if one.severity != "warning")
+        listed = tuple(
+            (entry.what, entry.text) for entry in part.entries if entry.severity != "warning"
+        )
         if listed and part.title not in ("Limits", "Expected"):
             yield Grid(part.title, ("", ""), listed)
 
@@ -126,7 +178,7 @@ def _energy(case: Case, system: str) -> Iterator[Grid]:
         yield Grid(name, ("Per cycle", "Energy", "Unit"), equal[0][1], (1,))
 
 
-def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[Shown, ...], ...]:
+def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[FactValue, ...], ...]:
     try:
         left, residual, friction = forces.work_left, forces.energy_residual, forces.friction_works
         terms = [
@@ -155,23 +207,36 @@ def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[Shown, ...]
 
 
 @np.errstate(all="ignore")
-def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, progress: Progress) -> Document:
+def side_by_side(
+    cases: Sequence[Case], given: Sequence[KeyTexts], system: str, progress: OnStep
+) -> Document:
     """Return the report on two machines: input that differs, key values with their differences, pictures in pairs."""
     names = [case.machine.name for case in cases]
     names = names if names[0] != names[1] else [f"{names[0]} (A)", f"{names[1]} (B)"]
     files = [case.machine.origin.name for case in cases if case.machine.origin]
-    items: list[Item] = []
+    items: list[SectionItem] = []
     if len(files) == len(names):
-        items.append("; ".join(f"{name} is that of {file}" for name, file in zip(names, files)) + ".")
+        items.append(
+            "; ".join(f"{name} is that of {file}" for name, file in zip(names, files)) + "."
+        )
     one, other = map(dict, given)
     keys = dict.fromkeys((*one, *other))
-    rows = tuple((key, one.get(key, _NONE), other.get(key, _NONE)) for key in keys if one.get(key) != other.get(key))
-    items.append(Grid("Keys", ("Key", *names), rows) if rows else "Nothing: both files give the same.")
+    rows = tuple(
+        (key, one.get(key, _NONE), other.get(key, _NONE))
+        for key in keys
+        if one.get(key) != other.get(key)
+    )
+    items.append(
+        Grid("Keys", ("Key", *names), rows) if rows else "Nothing: both files give the same."
+    )
     sections = [Section("input", "What was given differently", tuple(items))]
 
     for command in REPORTS:
         progress(command.title.lower())
-        items = [*_pairs(cases, command.word, names, system), *_key_values(cases, names, command.word, system)]
+        items = [
+            *_pairs(cases, command.word, names, system),
+            *_key_values(cases, names, command.word, system),
+        ]
         sections += [Section(command.word, command.title, tuple(items))] if items else []
     subtitles = tuple(f"{name}: {subtitle_of(case.machine)}" for name, case in zip(names, cases))
     sources = tuple(provenance(case.machine) for case in cases)
@@ -179,16 +244,20 @@ def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, pro
     return Document(" and ".join(names), subtitles, first, tuple(sections), sources)
 
 
-def _pairs(cases: Sequence[Case], command: str, names: Sequence[str], system: str) -> Iterator[Pair]:
+def _pairs(
+    cases: Sequence[Case], command: str, names: Sequence[str], system: str
+) -> Iterator[Pair]:
     """Yield the pictures of a command of both machines, which have their names in this report."""
-    for kind in (one for one in PICTURES if one.command == command):
-        for pair in zip_longest(*(_drawn(case, kind, system, name) for case, name in zip(cases, names))):
+    for kind in (picture for picture in PICTURES if picture.command == command):
+        for pair in zip_longest(
+            *(_drawn(case, kind, system, name) for case, name in zip(cases, names))
+        ):
             left, right = (one if isinstance(one, Picture) else None for one in pair)
             if left or right:
                 yield Pair(left, right)
 
 
-def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Iterator[Item]:
+def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Iterator[SectionItem]:
     """Yield both mechanisms, the key values that say most with their differences, verdicts and warnings of each."""
     yield from _pairs(cases, "", names, system)
     ids = dict.fromkeys(id for case in cases for id in facts_of(case))
@@ -198,7 +267,7 @@ def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Ite
     yield Grid("", _heads(names), _compared(numbers, system, titles), (1, 2, 4))
     for case, name in zip(cases, names):
         warnings = [*of_machine(case)]
-        found = (*verdicts(case), *(Notice(text, "warning") for text in warnings))
+        found = (*limit_verdicts(case), *(Notice(text, "warning") for text in warnings))
         yield from (f"{name}:", *found) if found else ()
         if not warnings:
             yield Notice(f"{name}: no warnings.", "good")
@@ -208,9 +277,14 @@ def _heads(names: Sequence[str]) -> tuple[str, ...]:
     return "Symbol", *names, "Unit", "Difference", "Meaning"
 
 
-def _key_values(cases: Sequence[Case], names: Sequence[str], command: str, system: str) -> Iterator[Grid]:
+def _key_values(
+    cases: Sequence[Case], names: Sequence[str], command: str, system: str
+) -> Iterator[Grid]:
     """Yield the key values of both machines, cylinder by cylinder, identical ones once."""
-    each = ([one for one in if_any(partial(subjects_of, case, command)) if one.results] for case in cases)
+    each = (
+        [one for one in if_any(partial(subjects_of, case, command)) if one.results]
+        for case in cases
+    )
     pairs = [*zip_longest(*each)]
     compared = []
     for pair in pairs:
@@ -227,22 +301,31 @@ def _numbers(subject: Subject | None, command: str) -> dict[Quantity, float]:
     """Return the key values of a subject in SI, without lists and residuals."""
     found = if_any(partial(subject.key_values, command)) if subject else []
     numbers = {quantity: number_of(value) for quantity, value in found if not quantity.residual}
-    return {quantity: number for quantity, number in numbers.items() if isinstance(number, (int, float))}
+    return {
+        quantity: number for quantity, number in numbers.items() if isinstance(number, (int, float))
+    }
 
 
 def _compared(
     numbers: Sequence[dict[Quantity, float]], system: str, meanings: dict[Quantity, str]
-) -> tuple[tuple[Shown, ...], ...]:
+) -> tuple[tuple[FactValue, ...], ...]:
     """Return a row for each key value of two machines: symbol, both values, unit, difference, meaning."""
     one, other = numbers
     pairs = {quantity: (one.get(quantity), other.get(quantity)) for quantity in (*one, *other)}
-    units = units_of([(of.kind, of.family, max(map(size_of, pair))) for of, pair in pairs.items()], system)
+    units = units_of(
+        [(of.kind, of.family, max(map(size_of, pair))) for of, pair in pairs.items()], system
+    )
     rows = []
     for (quantity, (first, second)), unit in zip(pairs.items(), units):
-        shown = [_NONE if value is None else float(convert(value, quantity.kind, unit)) for value in (first, second)]
+        shown = [
+            _NONE if value is None else float(convert(value, quantity.kind, unit))
+            for value in (first, second)
+        ]
         difference = _NONE
         if first is not None and second is not None and (first or not second):
             percent = 100 * (second - first) / abs(first) if first else 0.0
             difference = f"{percent:+.{2 if abs(percent) < 100 else 0}f} %" if percent else "0 %"
-        rows.append((quantity.symbol, *shown, quantity.marked(unit), difference, meanings[quantity]))
+        rows.append(
+            (quantity.symbol, *shown, quantity.marked(unit), difference, meanings[quantity])
+        )
     return tuple(rows)

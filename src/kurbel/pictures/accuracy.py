@@ -23,7 +23,9 @@ def accuracy_picture(report: Report) -> Picture:
     curves: dict[str, list[Curve]] = {}
     for title, method, errors, times in _dots(report):
         look = methods.setdefault(method, len(methods))
-        curves.setdefault(title, []).append(Curve(Words(method), np.array(errors), np.array(times), "dots", look))
+        curves.setdefault(title, []).append(
+            Curve(Words(method), np.array(errors), np.array(times), "dots", look)
+        )
     if not curves:
         raise UsageError("--plot: nothing was compared, there is nothing to draw")
 

@@ -35,7 +35,12 @@ def construction(source: Source) -> Iterator[Panel]:
                 panels["Velocity by components"] = _components(mechanism, angle, omega)
                 polar = _on_the_vertical(source, mechanism, angle, omega)
                 panels["Velocity on the vertical; dashed with an infinite rod"] = polar
-        elif isinstance(mechanism, SlottedLever) and mechanism.slides and math.isinf(mechanism.link) and omega:
+        elif (
+            isinstance(mechanism, SlottedLever)
+            and mechanism.slides
+            and math.isinf(mechanism.link)
+            and omega
+        ):
             panels["Velocity"] = _of_lever(source, mechanism, angle, omega)
         for title, panel in panels.items():
             yield panel._replace(title=f"{title}, {_at(degrees)}")
@@ -55,7 +60,9 @@ def polar_force(source: Source) -> Iterator[Panel]:
 
     symbol = Words("P + F_f") if source.having("F_friction") else source.words("P")
     panel = source.locus(tip, "P", symbol)
-    reach = max(float(np.nanmax(np.abs(one))) for one in (panel.curves[0].x, panel.curves[0].y)) or 1.0
+    reach = (
+        max(float(np.nanmax(np.abs(one))) for one in (panel.curves[0].x, panel.curves[0].y)) or 1.0
+    )
     radius = _SMALL * reach
     for degrees in source.angles or (_USUAL,):
         angle = CrankAngle.of(np.asarray(degrees))
@@ -69,7 +76,11 @@ def polar_force(source: Source) -> Iterator[Panel]:
             "force",
             {symbol.symbol: end, "T": cut},
             {symbol.symbol: force, "T": cut.imag},
-            faint=(radius * AROUND, (1.1j * np.nanmin(heights), 1.1j * np.nanmax(heights)), (end, cut)),
+            faint=(
+                radius * AROUND,
+                (1.1j * np.nanmin(heights), 1.1j * np.nanmax(heights)),
+                (end, cut),
+            ),
             member=[(0j, pin, pin + rod)],
             line=[(0j, end), (0j, cut)],
         )
@@ -109,14 +120,21 @@ def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Pane
         "velocity",
         {"v": pin + v, "v_s": pin + v_s, "c": head - c},
         {"v": abs(v), "v_s": share, "c": c},
-        faint=[omega * mechanism.crank * AROUND, (below, head), (pin + v, pin + v_s), (head - c, head + v_s)],
+        faint=[
+            omega * mechanism.crank * AROUND,
+            (below, head),
+            (pin + v, pin + v_s),
+            (head - c, head + v_s),
+        ],
         member=[(0j, pin, head)],
         arrow=[(pin, pin + v), (pin, pin + v_s), (head, head + v_s), (head, head - c)],
         joint=[(0j, pin, head)],
     )
 
 
-def _on_the_vertical(source: Source, mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
+def _on_the_vertical(
+    source: Source, mechanism: SliderCrank, angle: CrankAngle, omega: float
+) -> Panel:
     """Return c as MF, the curve of c over the displacement, and the circle that it is with an infinite rod."""
     pin, _, sin, cos = _straight(mechanism, angle)
     pin, v = omega * pin, omega * mechanism.crank
@@ -128,18 +146,29 @@ def _on_the_vertical(source: Source, mechanism: SliderCrank, angle: CrankAngle, 
         "velocity",
         {"B": pin, "G": foot, "c": cut},
         {"c": cut.imag},
-        faint=[(-end, end), (-1j * end, 1j * end), (pin, cut, foot), (0j, foot), (cut, over, complex(over.real))],
+        faint=[
+            (-end, end),
+            (-1j * end, 1j * end),
+            (pin, cut, foot),
+            (0j, foot),
+            (cut, over, complex(over.real)),
+        ],
         member=[(0j, pin)],
         line=[(0j, cut)],
         joint=[(0j, pin)],
     )
     infinite = curve("line", *(v * AROUND), name=Words("c, L/R = ∞", "c, L/R = inf"), look=1)
-    return panel._replace(curves=(Curve(Words("c"), v - omega * x, c, look=0), infinite, *panel.curves))
+    return panel._replace(
+        curves=(Curve(Words("c"), v - omega * x, c, look=0), infinite, *panel.curves)
+    )
 
 
 def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega: float) -> Panel:
     """Return c as GH, G under the lever's end and FH parallel to CG, and the curve of c over the place of the ram."""
-    pivot, pin = complex(-mechanism.frame * omega), mechanism.crank * omega * complex(angle.cos, angle.sin)
+    pivot, pin = (
+        complex(-mechanism.frame * omega),
+        mechanism.crank * omega * complex(angle.cos, angle.sin),
+    )
     along = (pin - pivot) / abs(pin - pivot)
     length = omega * (mechanism.lever or 0.0)
     end = pivot + length * along
@@ -155,26 +184,48 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
         {"C": pin, "D": pivot, "E": end, "F": foot, "G": under, "H": cut, "c": tip},
         {"c": (under - cut).real},
         guide=[(line + 1j * omega * x.min(), line + 1j * omega * x.max())],
-        faint=(circle, pivot / 2 * (1 + AROUND), (pivot, line), (end, under, pin), (0j, foot, cut), (end, ram)),
+        faint=(
+            circle,
+            pivot / 2 * (1 + AROUND),
+            (pivot, line),
+            (end, under, pin),
+            (0j, foot, cut),
+            (end, ram),
+        ),
         member=[(0j, pin), (pivot, end)],
         line=[(under, cut)],
         arrow=[(ram, tip)],
         joint=[(0j, pin, end, pivot)],
     )
-    return panel._replace(curves=(Curve(Words("c"), line.real + c, omega * x, look=0), *panel.curves))
+    return panel._replace(
+        curves=(Curve(Words("c"), line.real + c, omega * x, look=0), *panel.curves)
+    )
 
 
 def _straight(mechanism: SliderCrank, angle: CrankAngle) -> tuple[complex, complex, float, float]:
     """Return the places of crank pin and crosshead in m, with φ = 0 to the right, and sine and cosine of ψ."""
-    pin, (sin, cos) = mechanism.crank * complex(angle.cos, angle.sin), map(float, mechanism.rod_angle(angle))
+    pin, (sin, cos) = (
+        mechanism.crank * complex(angle.cos, angle.sin),
+        map(float, mechanism.rod_angle(angle)),
+    )
     return pin, complex(pin.real + mechanism.rod * cos, mechanism.offset), sin, cos
 
 
 def _panel(
-    kind: str, places: dict[str, complex], values: dict[str, float], **lines: Sequence[Sequence[complex] | ComplexArray]
+    kind: str,
+    places: dict[str, complex],
+    values: dict[str, float],
+    **lines: Sequence[Sequence[complex] | ComplexArray],
 ) -> Panel:
     """Return a panel of lines by their kinds, with named places and the values of some; what is found is a `line`."""
-    curves = [curve(one, *each, look=1 if one == "line" else None) for one, every in lines.items() for each in every]
-    marks = [Mark(at.real, at.imag, PageFigure(Words(name), values.get(name))) for name, at in places.items()]
+    curves = [
+        curve(one, *each, look=1 if one == "line" else None)
+        for one, every in lines.items()
+        for each in every
+    ]
+    marks = [
+        Mark(at.real, at.imag, PageFigure(Words(name), values.get(name)))
+        for name, at in places.items()
+    ]
     axis = Axis(NO_NAME, kind)
     return Panel(axis, axis, tuple(curves), marks=tuple(marks), equal=True, plain=True)

@@ -61,7 +61,11 @@ class Curve(NamedTuple):
     def pieces(self) -> list[tuple[Array, Array]]:
         """Return the points between jumps and gaps."""
         ends = [-1, *np.flatnonzero(np.isnan(self.x)).tolist(), len(self.x)]
-        return [(self.x[start + 1 : end], self.y[start + 1 : end]) for start, end in pairwise(ends) if end > start + 1]
+        return [
+            (self.x[start + 1 : end], self.y[start + 1 : end])
+            for start, end in pairwise(ends)
+            if end > start + 1
+        ]
 
     def jumps(self) -> list[tuple[Array, Array]]:
         """Return the two points of each jump."""
@@ -70,7 +74,9 @@ class Curve(NamedTuple):
 
     def closed(self) -> "Curve":
         """Return the curve of a cycle with a jump from its end to its beginning."""
-        x, y = (np.concatenate((one, [np.nan], one[:2])) for one in (self.x, self.y))  # a piece has two points
+        x, y = (
+            np.concatenate((one, [np.nan], one[:2])) for one in (self.x, self.y)
+        )  # a piece has two points
         return self._replace(x=x, y=y)
 
     def at_moment(self, moment: int) -> "Curve":
@@ -130,7 +136,11 @@ class Shape(NamedTuple):
     @property
     def outline(self) -> ComplexArray:
         """The points of its outline."""
-        return self.points + self.radius * _CIRCLE if self.radius else np.append(self.points, self.points[:1])
+        return (
+            self.points + self.radius * _CIRCLE
+            if self.radius
+            else np.append(self.points, self.points[:1])
+        )
 
 
 class Body(NamedTuple):
@@ -167,14 +177,17 @@ class Body(NamedTuple):
         """Return the body mirrored about the x-axis, turned by degrees about the origin, and moved."""
         shapes, place, turn = self.shapes, self.place, self.turn
         if mirrored:
-            shapes = tuple(one._replace(points=one.points.conj()) for one in shapes)
+            shapes = tuple(shape._replace(points=shape.points.conj()) for shape in shapes)
             place, turn = place.conj(), -turn
         place = place * np.exp(1j * np.radians(turned)) + moved
         return self._replace(shapes=shapes, place=place, turn=turn + turned)
 
     def scaled(self, by: float) -> "Body":
         """Return the body in another unit of length."""
-        shapes = tuple(one._replace(points=one.points * by, radius=one.radius * by) for one in self.shapes)
+        shapes = tuple(
+            shape._replace(points=shape.points * by, radius=shape.radius * by)
+            for shape in self.shapes
+        )
         return self._replace(shapes=shapes, place=self.place * by)
 
     def outlines(self) -> list[tuple[str, ComplexArray]]:
@@ -216,11 +229,14 @@ class Panel(NamedTuple):
     @property
     def places(self) -> tuple[list[Array], list[Array]]:
         """All x and all y that are drawn."""
-        drawn = [one.x + 1j * one.y for one in self.curves]
-        drawn += [one.x + 1j * line for one in self.shades for line in (one.low, one.high)]
-        drawn += [np.array([complex(one.x, one.y)]) for one in self.marks]
+        drawn = [curve.x + 1j * curve.y for curve in self.curves]
+        drawn += [shade.x + 1j * line for shade in self.shades for line in (shade.low, shade.high)]
+        drawn += [np.array([complex(mark.x, mark.y)]) for mark in self.marks]
         drawn += [line for body in self.bodies for _, line in body.outlines()]
-        drawn += [np.array([one.place - one.half, one.place + one.half]) for one in self.captions]
+        drawn += [
+            np.array([caption.place - caption.half, caption.place + caption.half])
+            for caption in self.captions
+        ]
         return [one.real.ravel() for one in drawn], [one.imag.ravel() for one in drawn]
 
     def at_moment(self, moment: int) -> "Panel":
@@ -247,13 +263,15 @@ class Picture(NamedTuple):
     @property
     def heading(self) -> str:
         """The line above the picture."""
-        return ". ".join(filter(None, (self.machine, f"{self.title}: {self.of}" if self.of else self.title)))
+        return ". ".join(
+            filter(None, (self.machine, f"{self.title}: {self.of}" if self.of else self.title))
+        )
 
 
 # a long report
 
 
-Shown = Union[str, float, tuple[float, str]]
+FactValue = Union[str, float, tuple[float, str]]
 """A text, a number, or a number with its unit."""
 
 
@@ -265,7 +283,7 @@ class Grid(NamedTuple):
 
     title: str
     heads: tuple[str, ...]
-    rows: tuple[tuple[Shown, ...], ...]
+    rows: tuple[tuple[FactValue, ...], ...]
     numbers: tuple[int, ...] = ()
     verdicts: tuple[str, ...] = ()
 
@@ -309,7 +327,7 @@ class Pair(NamedTuple):
     right: Picture | None
 
 
-class Answers(NamedTuple):
+class ReportAnswers(NamedTuple):
     """The key values, tables of places and notes of a report, without what is left out, warnings, and its columns."""
 
     report: Report
@@ -322,7 +340,7 @@ class OverAngle(NamedTuple):
     title: str
 
 
-Item = Union[str, Notice, Grid, Facts, PlaceTable, Answers, OverAngle, Picture, Pair]
+SectionItem = Union[str, Notice, Grid, Facts, PlaceTable, ReportAnswers, OverAngle, Picture, Pair]
 
 
 class Section(NamedTuple):
@@ -330,7 +348,7 @@ class Section(NamedTuple):
 
     id: str
     title: str
-    items: tuple[Item, ...]
+    items: tuple[SectionItem, ...]
 
 
 class Document(NamedTuple):
@@ -341,6 +359,6 @@ class Document(NamedTuple):
 
     title: str
     subtitles: tuple[str, ...]
-    summary: tuple[Item, ...]
+    summary: tuple[SectionItem, ...]
     sections: tuple[Section, ...]
     provenance: tuple[Provenance, ...]

@@ -34,7 +34,7 @@ AROUND = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 121))
 """A circle."""
 NO_WORDS: Mapping[str, str] = {}
 
-Line = tuple[Words, Formula]
+CurveFormula = tuple[Words, Formula]
 """A name, and what takes the columns of results at crank angles (n,) and returns values (n,) in SI."""
 
 
@@ -73,8 +73,12 @@ def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:
     within = ((breaks[:-1] + breaks[1:]) / 2)[piece]
     points = values(degrees, within)
     # a constant has only rounding for its height
-    allowed = np.maximum(np.ptp(points, axis=1) * FINENESS, np.abs(points).max(axis=1) * _JUMP)[:, None]
-    left = np.flatnonzero(np.diff(within) == 0)  # the points before the intervals that are not known to be straight
+    allowed = np.maximum(np.ptp(points, axis=1) * FINENESS, np.abs(points).max(axis=1) * _JUMP)[
+        :, None
+    ]
+    left = np.flatnonzero(
+        np.diff(within) == 0
+    )  # the points before the intervals that are not known to be straight
     for _ in range(_HALVINGS):
         middle, side = (degrees[left] + degrees[left + 1]) / 2, within[left]
         found = values(middle, side)
@@ -96,7 +100,7 @@ class Source:
         self.quantities: dict[str, Quantity] = {}
         self.key_values: dict[str, Quantity] = {}
         if isinstance(results, Results):  # others have no columns
-            self.quantities = {one.id: one for one in results.lists.all_columns}
+            self.quantities = {column.id: column for column in results.lists.all_columns}
             self.key_values = results.lists.key_values(results.command)
 
     @cached_property
@@ -117,19 +121,25 @@ class Source:
         """Return the axis of a column."""
         return Axis(self.words(id), self.quantities[id].kind)
 
-    def line(self, id: str, words: str = "") -> Line:
+    def line(self, id: str, words: str = "") -> CurveFormula:
         """Return a column as a line; words: instead of its own."""
         name = self.words(id)
         return name._replace(words=words or name.words), itemgetter(id)
 
-    def values(self, lines: Iterable[Line], degrees: object, within: Array | None = None) -> Array:
+    def values(
+        self, lines: Iterable[CurveFormula], degrees: object, within: Array | None = None
+    ) -> Array:
         """Return lines (k, n) in SI at crank angles (n,)."""
         degrees = np.atleast_1d(np.asarray(degrees, dtype=float))
         state = self.results.at(degrees, degrees if within is None else within)
         return np.array([np.broadcast_to(of(state), degrees.shape) for _, of in lines], dtype=float)
 
     def samples(
-        self, id: str, lines: Sequence[Line], also: Iterable[float] = (), breaks: Iterable[float] | None = None
+        self,
+        id: str,
+        lines: Sequence[CurveFormula],
+        also: Iterable[float] = (),
+        breaks: Iterable[float] | None = None,
     ) -> Sampled:
         """Return lines over the cycle, with points at the angles `also`; id: of a column that is like them.
 
@@ -143,7 +153,12 @@ class Source:
             return self.values(lines, degrees - turned, within - turned)
 
         # not numpy.unique, which loads numpy.ma, a fifth of the whole start-up
-        every = sorted({*(ends.tolist() if breaks is None else breaks), *(one for one in also if 0 < one < cycle)})
+        every = sorted(
+            {
+                *(ends.tolist() if breaks is None else breaks),
+                *(one for one in also if 0 < one < cycle),
+            }
+        )
         found = sampled(np.array(every), values)
         if not np.isfinite(found.values).all():
             raise too_large(self.quantities[id])
@@ -158,16 +173,24 @@ class Source:
         """Return marks at the extremes of a column, none for a constant; place: see `mark`, at a crank angle."""
         both = {name: found for name in (f"{id}_max", f"{id}_min") if (found := self.extreme(name))}
         constant = len({one.value for one in both.values()}) < len(both)
-        return () if constant else tuple(self.mark(name, one, place(one.degrees)) for name, one in both.items())
+        return (
+            ()
+            if constant
+            else tuple(self.mark(name, one, place(one.degrees)) for name, one in both.items())
+        )
 
     def mark(self, id: str, extreme: Extreme, place: float | complex) -> Mark:
         """Return an extreme, which is the key value of this id, at x, with its value for y, or at a point x + iy."""
         point = place if isinstance(place, complex) else complex(place, extreme.value)
-        return Mark(point.real, point.imag, PageFigure(self.words(id), extreme.value, at_deg=extreme.degrees))
+        return Mark(
+            point.real,
+            point.imag,
+            PageFigure(self.words(id), extreme.value, at_deg=extreme.degrees),
+        )
 
     def panel(
         self,
-        lines: Sequence[str | Line],
+        lines: Sequence[str | CurveFormula],
         over: str = PHI,
         like: str = "",
         shaded: bool = False,
@@ -184,15 +207,24 @@ class Source:
         line. shaded: what is between the first line and the last, or zero, if there is one line; faint: the last line,
         to compare with; zero: with the line y = 0.
         """
-        ids = [one for one in lines if isinstance(one, str)]
-        drawn = [self.line(one, words.get(one, "")) if isinstance(one, str) else one for one in lines]
+        ids = [line for line in lines if isinstance(line, str)]
+        drawn = [
+            self.line(line, words.get(line, "")) if isinstance(line, str) else line
+            for line in lines
+        ]
         samples = self.samples(like or ids[0], [self.line(over), *drawn], also, breaks)
         x, *rows = samples.values
         curves = [samples.curve(name, x, row) for (name, _), row in zip(drawn, rows)]
         curves[-1] = curves[-1]._replace(kind="faint" if faint else "line")
         curves += [level(x)] if zero else []
-        shades = between(x, rows[-1] if len(rows) > 1 else np.zeros_like(x), rows[0]) if shaded else ()
-        place = float if over == PHI else lambda angle: float(self.values([self.line(over)], angle)[0, 0])
+        shades = (
+            between(x, rows[-1] if len(rows) > 1 else np.zeros_like(x), rows[0]) if shaded else ()
+        )
+        place = (
+            float
+            if over == PHI
+            else lambda angle: float(self.values([self.line(over)], angle)[0, 0])
+        )
         marks = [mark for id in ids for mark in self.marks(id, place)]
         up = self.axis(like or ids[0])
         if len(ids) > 1 and not like:
@@ -200,9 +232,13 @@ class Source:
         title = title if np.any(rows) else ZERO
         return Panel(self.axis(over), up, tuple(curves), tuple(shades), tuple(marks), title=title)
 
-    def panels(self, *groups: Sequence[str], words: Mapping[str, str] = NO_WORDS) -> Iterator[Panel]:
+    def panels(
+        self, *groups: Sequence[str], words: Mapping[str, str] = NO_WORDS
+    ) -> Iterator[Panel]:
         """Yield a panel for each group of columns of one kind, without columns that the results lack."""
-        yield from (self.panel(ids, words=words) for group in groups if (ids := self.having(*group)))
+        yield from (
+            self.panel(ids, words=words) for group in groups if (ids := self.having(*group))
+        )
 
     def point(self, tip: Of[ComplexArray], degrees: float, off: float = 0.0) -> complex:
         """Return where a tip is at a crank angle, at a jump on the side of the angle that is so far off."""
@@ -271,29 +307,44 @@ def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
 def in_units(panel: Panel, system: str) -> Panel:
     """Return a panel, which is in SI, in the units of a system: one for each axis, and one for the works in shades."""
     across, up = panel.places
-    up += [np.array([one]) for one in (panel.y.low, panel.y.high) if one is not None]  # shared by several panels
+    up += [
+        np.array([one]) for one in (panel.y.low, panel.y.high) if one is not None
+    ]  # shared by several panels
     if panel.equal:
         across = up = across + up
-    works = [np.array([one.figure.value]) for one in panel.shades if one.figure]
+    works = [np.array([shade.figure.value]) for shade in panel.shades if shade.figure]
     units, kinds = dict[str, str](), {"energy": works, panel.x.kind: across, panel.y.kind: up}
     for kind, values in kinds.items():
-        largest = max((float(np.nanmax(np.abs(one))) for one in values if one.size), default=0.0)
+        largest = max(
+            (float(np.nanmax(np.abs(value))) for value in values if value.size), default=0.0
+        )
         units[kind] = shown_unit(kind, system, largest) if kind else ""
     x, y = (partial(convert, kind=one.kind, unit=units[one.kind]) for one in (panel.x, panel.y))
 
     def figure(one: PageFigure) -> PageFigure:
         kind = one.kind or panel.y.kind
-        return one._replace(value=one.value and convert(one.value, kind, units[kind]), unit=units[kind])
+        return one._replace(
+            value=one.value and convert(one.value, kind, units[kind]), unit=units[kind]
+        )
 
     return panel._replace(
         x=panel.x.shown(x, units[panel.x.kind]),
         y=panel.y.shown(y, units[panel.y.kind]),
         curves=tuple(one._replace(x=x(one.x), y=y(one.y)) for one in panel.curves),
         shades=tuple(
-            Shade(x(one.x), y(one.low), y(one.high), one.gain, one.figure and figure(one.figure))
-            for one in panel.shades
+            Shade(
+                x(shade.x),
+                y(shade.low),
+                y(shade.high),
+                shade.gain,
+                shade.figure and figure(shade.figure),
+            )
+            for shade in panel.shades
         ),
-        marks=tuple(Mark(x(one.x), y(one.y), figure(one.figure)) for one in panel.marks),
-        bodies=tuple(one.scaled(x(1.0)) for one in panel.bodies),
-        captions=tuple(one._replace(place=x(one.place), half=x(one.half)) for one in panel.captions),
+        marks=tuple(Mark(x(mark.x), y(mark.y), figure(mark.figure)) for mark in panel.marks),
+        bodies=tuple(body.scaled(x(1.0)) for body in panel.bodies),
+        captions=tuple(
+            caption._replace(place=x(caption.place), half=x(caption.half))
+            for caption in panel.captions
+        ),
     )

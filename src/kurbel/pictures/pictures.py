@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
@@ -35,7 +35,7 @@ from kurbel.pictures.picture_source import (
     AROUND,
     NO_NAME,
     PHI,
-    Line,
+    CurveFormula,
     PictureOptions,
     Source,
     curve,
@@ -61,14 +61,20 @@ def piston_force(source: Source) -> Iterator[Panel]:
         return
     reversals = source.results.phi_reversal or ()
     lines = _remaining_force(source)
-    panels = [source.panel(lines, like="P", shaded=True, zero=True, also=reversals)] if len(lines) > 1 else []
+    panels = (
+        [source.panel(lines, like="P", shaded=True, zero=True, also=reversals)]
+        if len(lines) > 1
+        else []
+    )
     for panel in (*panels, source.panel(["P"], zero=True)):
-        heights = source.values(lines[1:], reversals)[0] if panel.shades else np.zeros(len(reversals))
+        heights = (
+            source.values(lines[1:], reversals)[0] if panel.shades else np.zeros(len(reversals))
+        )
         figures = [PageFigure(Words("force reversal"), at_deg=angle) for angle in reversals]
         yield panel._replace(marks=(*panel.marks, *map(Mark, reversals, heights.tolist(), figures)))
 
 
-def _remaining_force(source: Source) -> list[Line]:
+def _remaining_force(source: Source) -> list[CurveFormula]:
     """Return what the force P is between: P_0 and the inertia line, or P and zero."""
     if len(source.having("P_start", "P_inertia")) < 2:
         return [(Words("P"), itemgetter("P"))]
@@ -98,10 +104,15 @@ def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[list[
     drive = source.results.drive
     cycle, (inner, outer) = drive.cycle, drive.mechanism.dead_centres()
     bends = [angle + turn for angle in (*source.results.breaks, *also) for turn in (0.0, cycle)]
-    ends = sorted({(end + turn) % cycle for turn in range(0, int(cycle), 360) for end in (inner, outer)})
+    ends = sorted(
+        {(end + turn) % cycle for turn in range(0, int(cycle), 360) for end in (inner, outer)}
+    )
     for start, end in pairwise((*ends, ends[0] + cycle)):
         name = "Outstroke" if math.cos(math.radians(start - inner)) > 1 - 1e-9 else "Return stroke"
-        yield [start, *(angle for angle in bends if start < angle < end), end], f"{name} {start:.4g}–{end:.4g}°"
+        yield (
+            [start, *(angle for angle in bends if start < angle < end), end],
+            f"{name} {start:.4g}–{end:.4g}°",
+        )
 
 
 def piston_force_of_crank(source: Source) -> Iterator[Panel]:
@@ -110,8 +121,11 @@ def piston_force_of_crank(source: Source) -> Iterator[Panel]:
     drive = source.results.drive
     if len(source.having("P", "x")) < 2 or not (drive.drives and drive.driven):
         return
-    lines: list[Line] = [
-        (Words("η P_driving", "eta P_driving"), lambda state: drive.machine.efficiency * state.P_driving),
+    lines: list[CurveFormula] = [
+        (
+            Words("η P_driving", "eta P_driving"),
+            lambda state: drive.machine.efficiency * state.P_driving,
+        ),
         (Words("−P_driven"), lambda state: -driven_force(state)),
     ]
     if source.having("P_inertia"):
@@ -129,13 +143,19 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
         curves = list[Curve]()
         for number, end in enumerate((gas.head, gas.crank)):
             if end:
-                name, _ = source.line("p_crank" if number else "p_head", "crank end" if number else "head end")
+                name, _ = source.line(
+                    "p_crank" if number else "p_head", "crank end" if number else "head end"
+                )
                 place = partial(_volume, gas, number) if over_volume else attrgetter("displacement")
-                samples = source.samples("P", [(NO_NAME, place), (name, partial(_pressure, gas, end))])
+                samples = source.samples(
+                    "P", [(NO_NAME, place), (name, partial(_pressure, gas, end))]
+                )
                 curves.append(samples.curve(name, *samples.values).closed())
         marks: tuple[Mark, ...] = ()
         if gas is every[0] and not over_volume and (highest := results.p_max):
-            marks = (source.mark("p_max", highest, float(results.at([highest.degrees]).displacement[0])),)
+            marks = (
+                source.mark("p_max", highest, float(results.at([highest.degrees]).displacement[0])),
+            )
         up = Axis(Words("p", words="absolute pressure" if gas.absolute else "pressure"), "pressure")
         curves.append(level(np.concatenate([one.x for one in curves]), gas.base))
         title = gas.piston.name if len(every) > 1 else ""
@@ -160,7 +180,11 @@ def cards_over_volume(source: Source) -> Iterator[Panel]:
 
 def forces(source: Source) -> Iterator[Panel]:
     """Forces in the rod, on the guide and at the crank pin over the crank angle (R Abb. 1061, 1062)."""
-    offered = [one.quantity.id for one in source.results.drive.mechanism.OFFERS if one.quantity.commands == ("forces",)]
+    offered = [
+        offer.quantity.id
+        for offer in source.results.drive.mechanism.OFFERS
+        if offer.quantity.commands == ("forces",)
+    ]
     found = source.having("S", "N", "D", "T", "M_out", *offered)
     for alike in grouped(found, lambda id: source.quantities[id].kind):
         yield source.panel(alike, zero=True)
@@ -213,7 +237,9 @@ def _with_infinite_rod(source: Source, id: str, over: str) -> Panel:
     name = Words(f"{symbol}, L/R = ∞", f"{symbol}, L/R = inf")
     # over the displacement out and back, but a straight line only out: two dashed lines would hide the dashes
     once = (0.0, 180.0) if id == "b" else (0.0, 180.0, 360.0)
-    samples = source.samples(id, [(name, infinite[over]), (name, infinite[id])], breaks=once if over == "x" else None)
+    samples = source.samples(
+        id, [(name, infinite[over]), (name, infinite[id])], breaks=once if over == "x" else None
+    )
     return panel._replace(curves=(*panel.curves, samples.curve(name, *samples.values)))
 
 
@@ -242,8 +268,15 @@ class PictureKind(NamedTuple):
 
 PICTURES = (
     PictureKind("piston-force", "Piston force", "forces", piston_force),
-    PictureKind("piston-force-way", "Piston force over the stroke", "forces", piston_force_over_stroke),
-    PictureKind("piston-force-crank", "Piston force that the crank passes on", "forces", piston_force_of_crank),
+    PictureKind(
+        "piston-force-way", "Piston force over the stroke", "forces", piston_force_over_stroke
+    ),
+    PictureKind(
+        "piston-force-crank",
+        "Piston force that the crank passes on",
+        "forces",
+        piston_force_of_crank,
+    ),
     PictureKind("card", "Indicator diagram", "forces", cards),
     PictureKind("card-volume", "Indicator diagram over the volume", "forces", cards_over_volume),
     PictureKind("forces", "Forces in the crank train", "forces", forces),
@@ -252,22 +285,35 @@ PICTURES = (
     PictureKind("effort", "Turning effort", "flywheel", effort),
     PictureKind("flow", "Flow delivered", "delivery", flow),
     PictureKind("effort-cranks", "Turning effort of each crank", "flywheel", crank_efforts),
-    PictureKind("effort-sides", "Turning effort against the driven pistons", "flywheel", effort_of_sides),
+    PictureKind(
+        "effort-sides", "Turning effort against the driven pistons", "flywheel", effort_of_sides
+    ),
     PictureKind("throw-stress", "Stress of the crankshaft", "stress", throw_stress),
     PictureKind("bearing-loads", "Bearing loads in polar form", "bearings", polar_loads, across=2),
     PictureKind("orders", "Turning effort by order", "harmonics", torque_orders),
     PictureKind("modes", "Natural modes of the shaft", "torsion", shaft_modes),
     PictureKind("campbell", "Campbell diagram", "torsion", campbell),
     PictureKind("free-vectors", "Unbalanced force and moment", "balance", unbalanced_vectors),
-    PictureKind("free-angle", "Unbalanced force and moment over the crank angle", "balance", unbalanced_over_angle),
-    PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
+    PictureKind(
+        "free-angle",
+        "Unbalanced force and moment over the crank angle",
+        "balance",
+        unbalanced_over_angle,
+    ),
+    PictureKind(
+        "free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders
+    ),
     PictureKind("zeuner", "Valve diagram of Zeuner", "motion", zeuner, across=2),
     PictureKind("reuleaux", "Valve diagram of Reuleaux", "motion", reuleaux, across=2),
     PictureKind("valve-ellipse", "Valve over the piston", "motion", valve_ellipse),
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
-    PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
+    PictureKind(
+        "motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke
+    ),
     PictureKind("mechanism", "Mechanism", "", mechanism),
-    PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
+    PictureKind(
+        "construction", "Constructions of displacement and velocity", "motion", construction
+    ),
 )
 """The pictures, the most informative picture of a machine first."""
 _OF_PARTS = ("motion", "forces", "bearings")
@@ -280,13 +326,13 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
     Raises UsageError for a picture that does not exist, or that this machine does not have, NoSolutionError where the
     machine locks itself or stalls.
     """
-    name, cylinders = case.machine.name, [one.drive.name for one in case.cylinders]
+    name, cylinders = case.machine.name, [cylinder.drive.name for cylinder in case.cylinders]
     if options.cylinder:
         if tuple(names) == ("throw-stress",):
             cylinders += [throw.name for throw in case.stress.throws]
         options = options._replace(cylinder=cylinder_meant(options.cylinder, cylinders))
         if options.cylinder not in cylinders:
-            there = f"there is no '{shown(options.cylinder or '')}'; there are {', '.join(cylinders)}"
+            there = f"there is no '{text_in_one_line(options.cylinder or '')}'; there are {', '.join(cylinders)}"
             raise UsageError(f"--cylinder: {there}")
     if not names or "all" in names:
         each = filter(None, (pictures_if_any(case, kind, options) for kind in PICTURES))
@@ -299,9 +345,13 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
     for id in names:
         found = _drawn(case, known[id], options) if id in known else []
         if not found:
-            wrong = f"no picture '{shown(id)}'{did_you_mean(id, tuple(known))}"
-            wrong = f"{name} has no picture '{id}': what it shows is left out" if id in known else wrong
-            raise UsageError(f"{wrong} ({name} has {', '.join(kind.id for kind in pictures_of(case, options))})")
+            wrong = f"no picture '{text_in_one_line(id)}'{did_you_mean(id, tuple(known))}"
+            wrong = (
+                f"{name} has no picture '{id}': what it shows is left out" if id in known else wrong
+            )
+            raise UsageError(
+                f"{wrong} ({name} has {', '.join(kind.id for kind in pictures_of(case, options))})"
+            )
         yield from found
 
 
@@ -331,15 +381,29 @@ def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> list[Pictu
     for source, name in _sources(case, kind, options):
         if panels := tuple(in_units(panel, options.system) for panel in kind.panels(source)):
             across = min(kind.across, len(panels))
-            found.append(Picture(kind.id, kind.title, kind.text, panels, case.machine.name, name, across))
+            found.append(
+                Picture(kind.id, kind.title, kind.text, panels, case.machine.name, name, across)
+            )
     return found
 
 
-def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator[tuple[Source, str]]:
+def _sources(
+    case: Case, kind: PictureKind, options: PictureOptions
+) -> Iterator[tuple[Source, str]]:
     """Yield (source of a picture, name of its cylinder or bearing); identical ones are drawn once."""
-    command, wanted = kind.command, [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
+    command, wanted = (
+        kind.command,
+        [
+            cylinder
+            for cylinder in case.cylinders
+            if options.cylinder in (None, cylinder.drive.name)
+        ],
+    )
     if not command:
-        yield Source((case, wanted), options.angles), (len(case.cylinders) > 1 and options.cylinder) or ""
+        yield (
+            Source((case, wanted), options.angles),
+            (len(case.cylinders) > 1 and options.cylinder) or "",
+        )
     elif command == "torsion":
         yield Source(case.torsion, options.angles), ""
     elif command == "stress":
@@ -355,7 +419,11 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
         for one in wanted if command == "forces" else ():
             one.refuse_locking()
         for equal in equal_parts(subjects_of(case, command), command):
-            named = [one for one in equal if command == "bearings" or options.cylinder in (None, one.name)]
+            named = [
+                one
+                for one in equal
+                if command == "bearings" or options.cylinder in (None, one.name)
+            ]
             if named:
                 several = command == "bearings" or len(case.cylinders) > 1
                 names = together([one.name for one in named]) if several else ""

@@ -12,7 +12,19 @@ from kurbel.machine import Machine
 from kurbel.mechanisms import PIN
 from kurbel.pictures.picture import MOMENTS_PER_TURN, Axis, Body, Caption, Curve, Panel
 from kurbel.pictures.picture_source import NO_NAME, Source
-from kurbel.pictures.train import BORE, EYE, SHOE, WALL, Train, box, cranks, cylinders, disc, members, throw
+from kurbel.pictures.train import (
+    BORE,
+    EYE,
+    SHOE,
+    WALL,
+    Train,
+    box,
+    cranks,
+    cylinders,
+    disc,
+    members,
+    throw,
+)
 
 _STILL = 60.0
 """Crank angle in degrees at which a machine is shown at rest where nothing pushes it."""
@@ -42,7 +54,11 @@ def mechanism(source: Source) -> Iterator[Panel]:
     if source.angles is None:
         # it rests where the tangential force of the first cylinder is largest
         largest = Source(first, None).extreme("T_max")
-        rest = largest.degrees + first.drive.cylinder.crank_position * (not alone) if largest else _STILL
+        rest = (
+            largest.degrees + first.drive.cylinder.crank_position * (not alone)
+            if largest
+            else _STILL
+        )
         turning = np.arange(MOMENTS_PER_TURN * case.machine.revolutions) * 360.0 / MOMENTS_PER_TURN
         moments = np.append(rest, turning)[None]
     for degrees in moments:
@@ -58,9 +74,11 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     """Return all views with their texts."""
     first, angle, mirrored = trains[0], _drawn_angle(trains), machine.rotation == "under"
     # the first cylinder of each stroke line, which is in front of those behind it; a yoke is in front of its crank
-    front = list({round(one.angle % 360.0, 6): one for one in reversed(trains)}.values())
+    front = list({round(train.angle % 360.0, 6): train for train in reversed(trains)}.values())
     R, (wheel, depth, look) = first.R, _wheel(machine, first.R)
-    bodies = [Body.of([disc("axis", R), *(disc(look, one) for one in (wheel, wheel - depth) if one > 0)])]
+    bodies = [
+        Body.of([disc("axis", R), *(disc(look, one) for one in (wheel, wheel - depth) if one > 0)])
+    ]
     for parts in (cranks, cylinders, members) if first.has_slot else (cylinders, cranks, members):
         bodies += [body.seen(one.angle) for one in front for body in parts(one)]
     bodies = [body.seen(angle, mirrored) for body in bodies]
@@ -68,13 +86,17 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     row, captions, arrows = _row(trains), list[Caption](), list[Curve]()
     if row:
         level = abs(math.sin(math.radians(angle))) < _LEVEL
-        side, captions = _from_the_side(row, 0.0 if machine.locomotive else wheel, look, _bounds(bodies), level)
+        side, captions = _from_the_side(
+            row, 0.0 if machine.locomotive else wheel, look, _bounds(bodies), level
+        )
         bodies += side
     elif len(trains) > 1:
         for one in front:
             outward = np.exp(1j * np.radians(angle - one.angle if mirrored else angle + one.angle))
             place = outward * (one.outer_end + _LETTER * R)
-            captions.append(Caption(str(trains.index(one) + 1), place, 0.4 * _LETTER * R, strong=True))
+            captions.append(
+                Caption(str(trains.index(one) + 1), place, 0.4 * _LETTER * R, strong=True)
+            )
     else:
         arrows = [*_arrows(first, angle, mirrored)]
     left, right, bottom, top = _bounds(bodies, arrows)
@@ -98,7 +120,7 @@ def _drawn_angle(trains: Sequence[Train]) -> float:
         return 90.0 if first.sketch.output else 0.0
     if first.cylinder.inclination is not None:
         return first.cylinder.inclination
-    banks = sorted({one.angle for one in trains})
+    banks = sorted({train.angle for train in trains})
     if banks[-1] - banks[0] > 180.0:  # a radial engine
         return 90.0
     upright = len(banks) > 1 or not first.crosshead or len(trains) > 2
@@ -110,12 +132,18 @@ def _row(trains: Sequence[Train]) -> dict[float, Train]:
 
     Places are those of the file if the cylinders then neither overlap nor are far apart.
     """
-    banks = {round(one.angle % 360.0, 6) for one in trains}
-    if len(banks) == len(trains) or not all(one.is_engine and not one.has_slot for one in trains):
+    banks = {round(train.angle % 360.0, 6) for train in trains}
+    if len(banks) == len(trains) or not all(
+        train.is_engine and not train.has_slot for train in trains
+    ):
         return {}
-    widest = max(barrel.bore for one in trains for barrel in one.barrels)
-    given = {place: one for one in trains if (place := one.cylinder.axial_position) is not None}
-    if len(given) == len(trains) and all(_LEAST <= one / widest <= _MOST for one in np.diff(sorted(given))):
+    widest = max(barrel.bore for train in trains for barrel in train.barrels)
+    given = {
+        place: train for train in trains if (place := train.cylinder.axial_position) is not None
+    }
+    if len(given) == len(trains) and all(
+        _LEAST <= one / widest <= _MOST for one in np.diff(sorted(given))
+    ):
         return dict(sorted(given.items()))
     return {_PITCH * widest * number: one for number, one in enumerate(trains)}
 
@@ -143,15 +171,21 @@ def _from_the_side(
         captions.append(Caption(lag, turn * complex(below, -place), 0.4 * em * len(lag)))
 
     left, right, _, top = _bounds(side)
-    moved = 1j * (along[2] - top - 0.1 * (along[3] - along[2])) if level else along[1] - left + 0.06 * (right - left)
-    captions = [one._replace(place=one.place + moved) for one in captions]
+    moved = (
+        1j * (along[2] - top - 0.1 * (along[3] - along[2]))
+        if level
+        else along[1] - left + 0.06 * (right - left)
+    )
+    captions = [caption._replace(place=caption.place + moved) for caption in captions]
     return [body.seen(0.0, moved=moved) for body in side], captions
 
 
-def _bounds(bodies: Sequence[Body], arrows: Sequence[Curve] = ()) -> tuple[float, float, float, float]:
+def _bounds(
+    bodies: Sequence[Body], arrows: Sequence[Curve] = ()
+) -> tuple[float, float, float, float]:
     """Return left, right, bottom and top of all positions of the bodies and arrows."""
     every = [line.ravel() for body in bodies for _, line in body.outlines()]
-    drawn = np.concatenate([*every, *((one.x + 1j * one.y).ravel() for one in arrows)])
+    drawn = np.concatenate([*every, *((arrow.x + 1j * arrow.y).ravel() for arrow in arrows)])
     return drawn.real.min(), drawn.real.max(), drawn.imag.min(), drawn.imag.max()
 
 
@@ -183,7 +217,7 @@ def _footnote(trains: Sequence[Train], row: dict[float, Train], wheel: str, behi
         shares.append(f"flywheel ({_WHEEL:g} cranks)")
     if behind and not row:
         hidden.append(f"{behind} of {len(trains)} cylinders, behind the others")
-    if any(piston.lever_ratio != 1 for one in trains for piston in one.cylinder.pistons):
+    if any(piston.lever_ratio != 1 for train in trains for piston in train.cylinder.pistons):
         hidden.append("pistons by a lever")
     note = f"To scale: {scale}. Drawn by shares: {', '.join((*shares, 'all else'))}."
     return f"{note} Not drawn: {', '.join(hidden)}." if hidden else note
@@ -214,18 +248,27 @@ def _acting(train: Train) -> dict[str, _Arrow]:
     # opposite the rod, on the other side of the pin or of the shaft; T and D are 0 where the side changes
     pin, outward = joint(PIN), np.exp(1j * np.radians(train.cycle))
     rod = next((joint(end) - pin for start, end in sketch.links if start == PIN), -outward)
-    behind, beside = ((direction * rod.conj()).real > _CLEAR * R for direction in (outward, 1j * outward))
+    behind, beside = (
+        (direction * rod.conj()).real > _CLEAR * R for direction in (outward, 1j * outward)
+    )
     off, tangent = EYE * train.pin + gap, 1j * outward
     T_away, D_away = np.where(beside, -tangent, tangent), np.where(behind, -outward, outward)
     acting = {"T": _Arrow(pin + off * T_away, tangent, T_away)}
-    acting["D"] = _Arrow(np.where(behind, (train.weight + gap) * D_away, pin + off * D_away), -outward, D_away)
+    acting["D"] = _Arrow(
+        np.where(behind, (train.weight + gap) * D_away, pin + off * D_away), -outward, D_away
+    )
 
     if sketch.toward:
         # beside the output, or beside the yoke
-        output, toward = joint(sketch.output) - 2.0 * R * train.has_slot, np.full(len(pin), complex(*sketch.toward))
+        output, toward = (
+            joint(sketch.output) - 2.0 * R * train.has_slot,
+            np.full(len(pin), complex(*sketch.toward)),
+        )
         clear = train.yoke + gap if train.yoke else 4.8 * train.pin
         if train.is_engine and not train.yoke:
-            clear = 1.5 * SHOE * R if train.crosshead else (0.5 + 2.2 * WALL) * train.barrels[0].bore
+            clear = (
+                1.5 * SHOE * R if train.crosshead else (0.5 + 2.2 * WALL) * train.barrels[0].bore
+            )
         across = 1j * toward
         acting["P"] = _Arrow(output - across * (clear + gap), toward, toward)
         acting["N"] = _Arrow(output + across * clear, across, across)

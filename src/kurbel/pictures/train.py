@@ -26,7 +26,10 @@ _TRUNK, _DISC, _PLUNGER = 0.9, 0.32, 0.6  # heights of pistons over the bore
 WALL, _COVER, _ROD = 0.06, 0.1, 0.08  # of the bore; the last is the radius of a piston rod
 _GLAND = 2.6  # length of cover and stuffing box over that of the cover
 _PIN, _JOURNAL = 0.2, 0.27  # radii over the crank radius
-_WEIGHT, _LIGHT = 0.95, 0.76  # radius of a counterweight over that of the crank, if some are given, and if none are
+_WEIGHT, _LIGHT = (
+    0.95,
+    0.76,
+)  # radius of a counterweight over that of the crank, if some are given, and if none are
 EYE, _HUB = 1.55, 1.45  # radii of eye and hub over those of pin and journal
 SHOE = 0.36  # half the length and height of a crosshead over the crank radius
 
@@ -63,8 +66,14 @@ class Train:
     forked: whether the end of a lever slides in a fork of what it drives.
     """
 
-    def __init__(self, machine: Machine, results: CylinderForces, degrees: Array, alone: bool) -> None:
-        self.results, self.cylinder, mechanism = results, results.drive.cylinder, results.drive.mechanism
+    def __init__(
+        self, machine: Machine, results: CylinderForces, degrees: Array, alone: bool
+    ) -> None:
+        self.results, self.cylinder, mechanism = (
+            results,
+            results.drive.cylinder,
+            results.drive.mechanism,
+        )
         own = degrees if alone else degrees - self.cylinder.crank_position
         self.cycle = own[: 1 + MOMENTS_PER_TURN * CYCLES[machine.cycle_of(self.cylinder)]]
         self.motion = own[: 1 + MOMENTS_PER_TURN]
@@ -73,22 +82,35 @@ class Train:
         assert sketch is not None
         self.mechanism, self.sketch = mechanism, sketch
         self.joints: dict[str, ComplexArray] = {
-            name: np.atleast_1d(np.asarray(x) + 1j * np.asarray(y)) for name, (x, y) in sketch.joints.items()
+            name: np.atleast_1d(np.asarray(x) + 1j * np.asarray(y))
+            for name, (x, y) in sketch.joints.items()
         }
         self.R, shaft = mechanism.crank, machine.crankshaft
         self.pin = shaft.pin_diameter / 2 if shaft else _PIN * self.R
-        self.journal = shaft.journal_diameter / 2 if shaft and shaft.journal_diameter else _JOURNAL * self.R
-        self.weight = self.R * (_WEIGHT if machine.counterweights or self.cylinder.counterweights else _LIGHT)
+        self.journal = (
+            shaft.journal_diameter / 2 if shaft and shaft.journal_diameter else _JOURNAL * self.R
+        )
+        self.weight = self.R * (
+            _WEIGHT if machine.counterweights or self.cylinder.counterweights else _LIGHT
+        )
 
         self.is_engine = bool(mechanism.slides) and not mechanism.quick_return
         self.has_slot = self.is_engine and bool(sketch.blocks)
         framed = self.is_engine and not mechanism.guided
         self.yoke = self.R * (1.6 if self.has_slot else 1.8 if framed else 0.0)
         masses, pistons = self.cylinder.masses, self.cylinder.pistons
-        piston_rod = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
-        self.crosshead = bool(self.yoke or piston_rod or machine.locomotive or (masses and masses.crosshead))
+        piston_rod = any(
+            piston.crank_end_rod or "crank_end" in piston.chambers for piston in pistons
+        )
+        self.crosshead = bool(
+            self.yoke or piston_rod or machine.locomotive or (masses and masses.crosshead)
+        )
         lever = self.joints[sketch.links[-1][0]]
-        self.forked = bool(sketch.output) and not self.is_engine and np.allclose((self.output - lever).imag, 0.0)
+        self.forked = (
+            bool(sketch.output)
+            and not self.is_engine
+            and np.allclose((self.output - lever).imag, 0.0)
+        )
 
     @property
     def output(self) -> ComplexArray:
@@ -123,7 +145,11 @@ class Train:
             closed, topped = (bool(gas.crank), bool(gas.head)) if gas else (self.crosshead, True)
             trunk = not found and not self.crosshead
             height = (_TRUNK if trunk else _DISC if closed else _PLUNGER) * bore
-            gaps = [volume / area for volume, area in zip(gas.clearance_volumes, gas.areas)] if gas else [0.0, 0.0]
+            gaps = (
+                [volume / area for volume, area in zip(gas.clearance_volumes, gas.areas)]
+                if gas
+                else [0.0, 0.0]
+            )
             above, below = (height / 2 + (gap or _CLEARANCE * stroke) for gap in gaps)
             below = below if closed else 0.28 * height  # a liner that is open ends above the skirt
             room = 0.12 * self.R + _GLAND * _COVER * bore
@@ -188,7 +214,10 @@ def cylinders(train: Train) -> Iterator[Body]:
         yield Body.of(_walls(barrel), level)
     if train.crosshead and not train.yoke:
         (near, _), (far, _) = train.sketch.guides[0]
-        yield Body.of(_both("wall", near - 1.4 * SHOE * R, far + 1.2 * SHOE * R, SHOE * R, 1.25 * SHOE * R), level)
+        yield Body.of(
+            _both("wall", near - 1.4 * SHOE * R, far + 1.2 * SHOE * R, SHOE * R, 1.25 * SHOE * R),
+            level,
+        )
     yield Body.of(_on_the_rod(train), train.output)
 
 
@@ -199,13 +228,22 @@ def _chambers(train: Train, barrel: Barrel) -> Iterator[Body]:
         return
     # a picture at one angle has the tints of the moving one
     angles = np.append(train.cycle, np.arange(0.0, train.results.drive.cycle, 5.0))
-    state, ends = train.results.at(angles), [*zip((gas.crank, gas.head), barrel.faces, (0.0, 180.0))]
-    pressures = np.array([np.broadcast_to(state.pressure(end), angles.shape) for end, _, _ in ends if end])
+    state, ends = (
+        train.results.at(angles),
+        [*zip((gas.crank, gas.head), barrel.faces, (0.0, 180.0))],
+    )
+    pressures = np.array(
+        [np.broadcast_to(state.pressure(end), angles.shape) for end, _, _ in ends if end]
+    )
     # a pump has one pressure on each stroke
-    pumped = bool(gas.work < 0) and all(len(set(np.round(one).tolist())) <= 2 for one in pressures)
+    pumped = bool(gas.work < 0) and all(
+        len(set(np.round(pressure).tolist())) <= 2 for pressure in pressures
+    )
     tints = 0.08 + 0.72 * ((pressures - pressures.min()) / (np.ptp(pressures) or 1.0)) ** 0.7
     shape = box("liquid" if pumped else "gas", 0.0, 1.0, barrel.bore / 2)
-    for (face, turn), tint in zip([one[1:] for one in ends if one[0]], tints[:, : len(train.cycle)]):
+    for (face, turn), tint in zip(
+        [one[1:] for one in ends if one[0]], tints[:, : len(train.cycle)]
+    ):
         length = abs(train.output.real + barrel.shift - face) - barrel.height / 2
         yield Body.of([shape], face + 1j * train.mechanism.offset, turn, length, tint)
 
@@ -238,12 +276,21 @@ def _on_the_rod(train: Train) -> Iterator[Shape]:
     if train.crosshead:
         yield box("metal", left, right, train.yoke or SHOE * R)
     if train.yoke:  # the pin of a rod is on solid ground
-        yield box("hollow", left + 0.15 * R, right - 0.15 * R if train.has_slot else -right, train.yoke - 0.2 * R)
+        yield box(
+            "hollow",
+            left + 0.15 * R,
+            right - 0.15 * R if train.has_slot else -right,
+            train.yoke - 0.2 * R,
+        )
 
 
 def _piston(barrel: Barrel) -> Iterator[Shape]:
     """Yield a piston with three rings, a trunk piston with its inside."""
-    half, bottom, crown = barrel.bore / 2, barrel.shift - barrel.height / 2, barrel.shift + barrel.height / 2
+    half, bottom, crown = (
+        barrel.bore / 2,
+        barrel.shift - barrel.height / 2,
+        barrel.shift + barrel.height / 2,
+    )
     yield box("metal", bottom, crown, half)
     if not any(barrel.rods):
         yield box("hollow", bottom, crown - 0.24 * barrel.height, 0.8 * half)
@@ -259,7 +306,11 @@ def _piston(barrel: Barrel) -> Iterator[Shape]:
 def cranks(train: Train) -> Iterator[Body]:
     """Yield the bearings on the frame, and what turns on and on with its counterweight."""
     sketch, joints = train.sketch, train.joints
-    foot = train.journal * np.array([-0.8j, 2.6 - 2.0j, 2.6 + 2.0j, 0.8j]) * (-1.0 if sketch.output else -1j)
+    foot = (
+        train.journal
+        * np.array([-0.8j, 2.6 - 2.0j, 2.6 + 2.0j, 0.8j])
+        * (-1.0 if sketch.output else -1j)
+    )
     for name in () if train.is_engine else sketch.fixed:
         yield Body.of([_polygon("wall", *foot)], joints[name][0])
     for tip, centre in ((PIN, SHAFT), *filter(train.is_crank, sketch.links)):
@@ -269,10 +320,19 @@ def cranks(train: Train) -> Iterator[Body]:
 
 def _crank(train: Train, R: float) -> Iterator[Shape]:
     """Yield a web with its counterweight, hub and eye."""
-    hub, eye, around = _HUB * train.journal, EYE * train.pin, np.radians(np.linspace(142.0, 218.0, 11))
+    hub, eye, around = (
+        _HUB * train.journal,
+        EYE * train.pin,
+        np.radians(np.linspace(142.0, 218.0, 11)),
+    )
     yield _polygon("web", hub * -1j, R - eye * 1j, R + eye * 1j, hub * 1j)
     yield _polygon("web", hub * 1j, *train.weight * np.exp(1j * around), hub * -1j)
-    yield from (disc("web", eye, R), disc("web", hub), disc("metal", train.journal), disc("web", 0.15 * train.journal))
+    yield from (
+        disc("web", eye, R),
+        disc("web", hub),
+        disc("metal", train.journal),
+        disc("web", 0.15 * train.journal),
+    )
 
 
 def members(train: Train) -> Iterator[Body]:
@@ -287,9 +347,13 @@ def members(train: Train) -> Iterator[Body]:
             far = max(length, float(reach.max()) + 2.4 * pin)
             slot = box("hollow", float(reach.min()) - 1.8 * pin, far - 0.7 * pin, 1.05 * pin)
             if not train.has_slot:
-                yield Body.of([box("rod", 0.0, far, 1.9 * pin), disc("rod", 1.9 * pin), slot], start, turn)
+                yield Body.of(
+                    [box("rod", 0.0, far, 1.9 * pin), disc("rod", 1.9 * pin), slot], start, turn
+                )
             yield Body.of([box("metal", -1.7 * pin, 1.7 * pin, 1.05 * pin)], slotted[link], turn)
-        elif not (train.has_slot or train.is_crank(link) or (train.forked and link[1] == sketch.output)):
+        elif not (
+            train.has_slot or train.is_crank(link) or (train.forked and link[1] == sketch.output)
+        ):
             inside = box("thin", EYE * pin, length - EYE * pin, 0.28 * pin)
             eyes = disc("rod", EYE * pin), disc("rod", 1.25 * pin, length)
             yield Body.of([box("rod", 0.0, length, 0.65 * pin), inside, *eyes], start, turn)
@@ -305,7 +369,17 @@ def _ram(train: Train) -> Iterator[Body]:
     pin, ((line, start), (_, end)) = train.pin, train.sketch.guides[0]
     under, over, stroke = 1.6 * pin, 3.8 * pin, end - start
     for at in (under - 0.5 * pin, over):
-        yield Body.of([box("wall", line + at, line + at + 0.5 * pin, start - 0.35 * stroke, end + 0.25 * stroke)])
+        yield Body.of(
+            [
+                box(
+                    "wall",
+                    line + at,
+                    line + at + 0.5 * pin,
+                    start - 0.35 * stroke,
+                    end + 0.25 * stroke,
+                )
+            ]
+        )
     lever = train.joints[train.sketch.links[-1][0]]
     low = -float((train.output - lever).real.max()) if train.forked else 0.0
     tool = complex(2.0 * pin, 0.95 * stroke) + pin * np.array([0.0, 0.8 - 1.4j, -2.6 - 0.3j])
@@ -326,7 +400,14 @@ def throw(train: Train, bore: float) -> Iterator[Body]:
     yield Body.of(_both("web", -train.weight, R, *webs), stretch=high)
     yield Body.of(_both("web", -hub, hub, *webs))
     # its end is hidden by the eye
-    rod = box("rod", -train.mechanism.rod_length, 0.0, 0.55 * half), box("rod", -pin, pin, 0.8 * half)
+    rod = (
+        box("rod", -train.mechanism.rod_length, 0.0, 0.55 * half),
+        box("rod", -pin, pin, 0.8 * half),
+    )
     yield Body.of(rod, train.output.real)
-    ends = [box("metal", -pin, pin, half), box("rod", -eye, eye, 0.8 * half), *_both("web", -eye, eye, *webs)]
+    ends = [
+        box("metal", -pin, pin, half),
+        box("rod", -eye, eye, 0.8 * half),
+        *_both("web", -eye, eye, *webs),
+    ]
     yield Body.of(ends, R * high)

@@ -53,7 +53,10 @@ def zeuner(source: Source) -> Iterator[Panel]:
 def _loops(valve: Valve, end: ValveEnd) -> ComplexArray:
     """Return how far the valve is off the middle, without its sign, along the crank as this end counts it."""
     middle = end.eccentric.angle_at(-end.shift, end.sense)
-    passed = [(middle - end.eccentric.advance) % 360.0, (180.0 - middle - end.eccentric.advance) % 360.0]
+    passed = [
+        (middle - end.eccentric.advance) % 360.0,
+        (180.0 - middle - end.eccentric.advance) % 360.0,
+    ]
     degrees = np.sort(np.concatenate((np.linspace(0.0, 360.0, _STEPS), np.array(passed))))
     displacement = valve.displacement(CrankAngle.of(degrees + end.dead_centre))
     return np.abs(displacement) * unit_vector(degrees)
@@ -112,13 +115,25 @@ def valve_ellipse(source: Source) -> Iterator[Panel]:
 
 def _panel(end: ValveEnd, curves: list[Curve], marks: list[Mark]) -> Panel:
     axis = Axis(NO_NAME, "length")
-    return Panel(axis, axis, tuple(curves), marks=tuple(marks), equal=True, plain=True, title=end.name.capitalize())
+    return Panel(
+        axis,
+        axis,
+        tuple(curves),
+        marks=tuple(marks),
+        equal=True,
+        plain=True,
+        title=end.name.capitalize(),
+    )
 
 
-def _event_marks(end: ValveEnd, places: list[complex], angles: list[float] | None = None) -> Iterator[Mark]:
+def _event_marks(
+    end: ValveEnd, places: list[complex], angles: list[float] | None = None
+) -> Iterator[Mark]:
     """Yield the events of an end with their angles, by default from its own dead centre."""
     for event, place, degrees in zip(end.events._fields, places, angles or end.events):
-        yield Mark(place.real, place.imag, PageFigure(Words(event.replace("_", "-")), at_deg=degrees))
+        yield Mark(
+            place.real, place.imag, PageFigure(Words(event.replace("_", "-")), at_deg=degrees)
+        )
 
 
 def _letter(letter: str, place: complex, length: float | None = None) -> Mark:

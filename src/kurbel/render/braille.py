@@ -13,7 +13,9 @@ from kurbel.render.picture import Medium, PanelFrame, axis_text, dense, legend_t
 from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, paragraph, width
 
 # lengths in columns; a row is as high as two columns are wide
-TERMINAL = Medium(letter=1.0, line=2.0, dot=0.0, grain=(1.0, 2.0), covering=1.5, shortest=13.5, tallest=59.5)
+TERMINAL = Medium(
+    letter=1.0, line=2.0, dot=0.0, grain=(1.0, 2.0), covering=1.5, shortest=13.5, tallest=59.5
+)
 _WIDTH, _NARROWEST, _WIDEST = 80, 24, 160
 _TALL, _SHORT = 32.0, 20.0
 """Height of a panel alone and of one among several."""
@@ -48,9 +50,15 @@ class Canvas:
         """Draw a line through places x + iy (n,); what is beyond is cut off."""
         down, across = self._bits.shape
         columns, rows = (
-            np.rint(one).astype(int) for one in dense(places.real / self.dot[0], places.imag / self.dot[1])
+            np.rint(one).astype(int)
+            for one in dense(places.real / self.dot[0], places.imag / self.dot[1])
         )
-        inside = (columns >= 0) & (columns < across * self.columns) & (rows >= 0) & (rows < down * len(self._dots))
+        inside = (
+            (columns >= 0)
+            & (columns < across * self.columns)
+            & (rows >= 0)
+            & (rows < down * len(self._dots))
+        )
         columns, rows = columns[inside] + across * self.side, rows[inside]
         cells = rows // down, columns // across
         np.bitwise_or.at(self._dots, cells, self._bits[rows % down, columns % across])
@@ -78,7 +86,9 @@ class Canvas:
                 for dots, text, role in zip(*row)
             )
             pieces = groupby(signs, key=itemgetter(0))
-            found.append(tuple(Piece("".join(sign for _, sign in each), role) for role, each in pieces))
+            found.append(
+                tuple(Piece("".join(sign for _, sign in each), role) for role, each in pieces)
+            )
         return found
 
 
@@ -94,7 +104,11 @@ def braille(picture: Picture, look: Look) -> Iterator[Line]:
 def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     has_dots = look.has("⣿")
     dot = (0.5, 0.5) if has_dots else (1.0, 2.0)
-    side, needed, up = -1, 0, []  # columns of the texts at the left, which are others in a narrower frame
+    side, needed, up = (
+        -1,
+        0,
+        [],
+    )  # columns of the texts at the left, which are others in a narrower frame
     while side < needed:
         side = needed
         frame = PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1])
@@ -110,14 +124,22 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
         for place, text in up:
             canvas.write(-1 - width(text), int(place // 2), text, "unit")
         canvas.write(0, rows, look.text("─") * canvas.columns, "rule")
-        for place, left, text in frame.ticks_across(max(2, canvas.columns // 10), 0.0, canvas.columns):
+        for place, left, text in frame.ticks_across(
+            max(2, canvas.columns // 10), 0.0, canvas.columns
+        ):
             canvas.write(int(place), rows, "┴" if look.has("┴") else "+", "rule")
             canvas.write(round(left), rows + 1, text, "unit")
-    named = [legend_text(curve.name, look) for curve in panel.curves if curve.kind == "line" and curve.name.words]
+    named = [
+        legend_text(curve.name, look)
+        for curve in panel.curves
+        if curve.kind == "line" and curve.name.words
+    ]
     above += [", ".join(named)] if len(named) > 1 else []
     yield from paragraph("   ".join(filter(None, above)), wide)
     drawn = canvas.lines()
-    used = [number for number, row in enumerate(drawn) if "".join(piece.text for piece in row).strip()]
+    used = [
+        number for number, row in enumerate(drawn) if "".join(piece.text for piece in row).strip()
+    ]
     yield from drawn[used[0] : used[-1] + 1]
     if panel.plain:
         yield from (line(one, "unit") for one in folded(look.text(panel.footnote), wide) if one)
@@ -142,17 +164,27 @@ def _draw(canvas: Canvas, frame: PanelFrame) -> None:
     for role, places in sorted(drawn, key=lambda one: one[0] != "rule"):
         canvas.line(places, role)
     for shade in () if panel.curves else panel.shades:
-        ends, step = frame.place(shade.x[[0, -1]], np.array([shade.low[0], shade.high[0]])), canvas.dot[0]
-        for dots in np.arange(np.ceil(ends[0].real / step), ends[1].real / step, 1 if shade.gain else 2):
+        ends, step = (
+            frame.place(shade.x[[0, -1]], np.array([shade.low[0], shade.high[0]])),
+            canvas.dot[0],
+        )
+        for dots in np.arange(
+            np.ceil(ends[0].real / step), ends[1].real / step, 1 if shade.gain else 2
+        ):
             canvas.line(dots * step + 1j * ends.imag, "curve0" if shade.gain else "curve1")
 
 
 def _label(canvas: Canvas, frame: PanelFrame, rows: int) -> None:
     """Write captions and labels over what is drawn in these rows."""
-    for one in frame.panel.captions:
-        at, text = complex(frame.place(one.place.real, one.place.imag)), frame.look.text(one.text)
+    for caption in frame.panel.captions:
+        at, text = (
+            complex(frame.place(caption.place.real, caption.place.imag)),
+            frame.look.text(caption.text),
+        )
         left = min(max(round(at.real - width(text) / 2), 0), canvas.columns - width(text))
-        canvas.write(left, min(round(at.imag / 2), rows - 1), text, "head" if one.strong else "unit")
+        canvas.write(
+            left, min(round(at.imag / 2), rows - 1), text, "head" if caption.strong else "unit"
+        )
     for label in frame.labels(named=True):
         role = "head" if label.look is None else f"curve{label.look}"
         canvas.write(round(label.left), min(round(label.top / 2), rows - 1), label.text, role)

@@ -39,7 +39,7 @@ def check_file(file_name: str, option: str = "--output", poster: bool = False) -
     return kind
 
 
-def draw(pictures: Iterable[Picture], look: Look, file_name: str | None) -> None:
+def draw_output(pictures: Iterable[Picture], look: Look, file_name: str | None) -> None:
     """Draw pictures to a file, or as characters to standard output where none is named."""
     if file_name is not None:
         draw_file(list(pictures), look, file_name)
@@ -112,15 +112,21 @@ def check_poster(size: str, file_name: str | None) -> str:
     if named is None:
         raise UsageError(f"--poster {size}: there are {', '.join(SIZES)}")
     if file_name is None or not file_name.lower().endswith((".pdf", ".svg")):
-        raise UsageError(f"--poster {named}: a poster is a file; give --output NAME.pdf or NAME.svg")
+        raise UsageError(
+            f"--poster {named}: a poster is a file; give --output NAME.pdf or NAME.svg"
+        )
     check_file(file_name, poster=True)
     return named
 
 
-def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name: str, size: str) -> None:
+def draw_poster(
+    picture: Picture, line: str, facts: Facts, look: Look, file_name: str, size: str
+) -> None:
     """Draw the first panel of a picture as a sheet of this size to a file; line: what is below its name."""
     panel = picture.panels[0]
-    x, y = (axis._replace(low=None, high=None) for axis in (panel.x, panel.y))  # no room for forces, which are left out
+    x, y = (
+        axis._replace(low=None, high=None) for axis in (panel.x, panel.y)
+    )  # no room for forces, which are left out
     panel = panel._replace(x=x, y=y, curves=(), title="")
     across, up = (np.concatenate(one) for one in panel.places)
     wide = bool(np.ptp(across) > 0.95 * np.ptp(up))
@@ -131,7 +137,7 @@ def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name
         "size": size,
         "wide": wide,
         "large": min(5.2, 150.0 * (1.4 if wide else 1.0) / max(len(title), 1)),
-        "facts": [_fact(one, look) for one in facts.facts[:_MOST_FACTS]],
+        "facts": [_fact(fact, look) for fact in facts.facts[:_MOST_FACTS]],
     }
     drawn = typeset(_SHEET, file_name, words=json.dumps(words), svg=poster_svg(panel, look, wide))
     with opened(file_name) as file:
@@ -142,4 +148,10 @@ def _fact(one: Fact, look: Look) -> dict[str, object]:
     value, unit = look.measured(one.value, one.unit, DIGITS)
     symbol = subscripts(look.text(one.symbol))
     where = f" {look.text(one.where)}"
-    return {"title": look.text(one.title), "value": look.fine(value), "unit": unit, "symbol": symbol, "where": where}
+    return {
+        "title": look.text(one.title),
+        "value": look.fine(value),
+        "unit": unit,
+        "symbol": symbol,
+        "where": where,
+    }

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from kurbel.render import Look
 from kurbel.render.output import look_at, write_lines, write_out
-from kurbel.render.text import Line, plain
+from kurbel.render.text import Line, plain_lines
 from kurbel.tables.tables import Report
 
 
@@ -25,16 +25,16 @@ def _pieces(report: Report, look: Look) -> Iterable[str]:
 
         return json_text(report, look)
     if look.format == "table":
-        return plain(_lines(report, look))
+        return plain_lines(_lines(report, look))
     from kurbel.render.markup import markup
 
     return markup(report, look)
 
 
 def _lines(report: Report, look: Look, first: Collection[str] | None = None) -> Iterator[Line]:
-    from kurbel.render.page import fitting, page
+    from kurbel.render.page import fitting, page_lines
 
-    return page(report, look) if first is None else fitting(report, look, first)
+    return page_lines(report, look) if first is None else fitting(report, look, first)
 
 
 class Output(NamedTuple):

@@ -13,7 +13,16 @@ from kurbel import __version__
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.text import TURNING, rounded, whole_if_integral
-from kurbel.tables.tables import PISTONS, Column, InputFile, KeyValue, Part, Provenance, Report, Value
+from kurbel.tables.tables import (
+    PISTONS,
+    CellValue,
+    Column,
+    InputFile,
+    KeyValue,
+    Part,
+    Provenance,
+    Report,
+)
 
 Content = dict[str, object]
 """What becomes an object of JSON."""
@@ -25,10 +34,15 @@ _ESCAPED = {code: f"\\u{code:04x}" for code in TURNING}
 def json_text(report: Report, look: Look) -> Iterator[str]:
     """Yield one JSON object in pieces, each column on a line of its own. Raises UsageError for a decimal comma."""
     if look.comma:
-        raise UsageError("--decimal comma: JSON has the decimal point only; use it with table, csv or markdown")
+        raise UsageError(
+            "--decimal comma: JSON has the decimal point only; use it with table, csv or markdown"
+        )
     content: Content = {"kurbel": __version__, "format": FORMAT, "command": report.command}
     if report.machine is not None:
-        content |= {"machine": report.machine, **_made_from(report.provenance and report.provenance())}
+        content |= {
+            "machine": report.machine,
+            **_made_from(report.provenance and report.provenance()),
+        }
     if report.head:
         content["head"] = list(report.head)
     ratios = report.group == "ratios"
@@ -75,7 +89,7 @@ def _named(part: Part, ratio: bool, look: Look) -> Content:
 def _results(part: Part, look: Look) -> Content:
     """Return what JSON has of a part; its columns are still to be written, one after another."""
 
-    def number(value: Value) -> Value:
+    def number(value: CellValue) -> CellValue:
         return rounded(value, look.digits)
 
     def key_value(one: Column | KeyValue, value: object, **more: object) -> dict[str, object]:
@@ -84,12 +98,18 @@ def _results(part: Part, look: Look) -> Content:
     places, key_values, pistons = list[Content](), list[Content](), list[Content]()
     for table in part.place_tables:
         if table.id == PISTONS:
-            for names, *values in zip(table.names, *(one.values for one in table.columns)):
+            for names, *values in zip(table.names, *(column.values for column in table.columns)):
                 own = [key_value(one, number(value)) for one, value in zip(table.columns, values)]
                 pistons.append({"name": names[0], "key_values": own})
         else:
-            rows = {"rows": [dict(zip(table.heads, names)) for names in table.names]} if table.heads else {}
-            places.append({"id": table.id, "title": table.title, **rows, "columns": list(table.columns)})
+            rows = (
+                {"rows": [dict(zip(table.heads, names)) for names in table.names]}
+                if table.heads
+                else {}
+            )
+            places.append(
+                {"id": table.id, "title": table.title, **rows, "columns": list(table.columns)}
+            )
     for one in part.key_values:
         at = {} if one.at_deg is None else {"at_deg": number(one.at_deg)}
         value = list(map(number, one.value)) if isinstance(one.value, tuple) else number(one.value)
@@ -108,7 +128,10 @@ def _pieces(node: object, line_end: str, look: Look) -> Iterator[str]:
     """Yield a node in pieces: on one line, or with a line for each entry if one of them is an object."""
     if isinstance(node, Column):
         phi = node.id == "phi"  # crank angles have all digits
-        values = [whole_if_integral(one) if phi else rounded(one, look.digits) for one in node.values]
+        values = [
+            whole_if_integral(value) if phi else rounded(value, look.digits)
+            for value in node.values
+        ]
         marked = {"marked": node.marked} if node.marked else {}
         node = {"id": node.id, "symbol": node.symbol, "unit": node.unit, "values": values, **marked}
     elif isinstance(node, (dict, list)) and _holds_object(node):
@@ -131,7 +154,9 @@ def _holds_object(node: object) -> bool:
 
 def answer_schema() -> object:
     """Return the JSON Schema (draft-07) of the answers of all commands but the lines of `kurbel sweep`."""
-    with open(os.path.join(os.path.dirname(__file__), "answers.schema.json"), encoding="utf-8") as file:
+    with open(
+        os.path.join(os.path.dirname(__file__), "answers.schema.json"), encoding="utf-8"
+    ) as file:
         return json.load(file)
 
 
@@ -143,7 +168,9 @@ def indented(schema: object) -> str:
 # JUnit
 
 
-def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], look: Look) -> Iterator[str]:
+def findings_junit(
+    checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], look: Look
+) -> Iterator[str]:
     """Yield checks as JUnit XML: a suite for every file, given with its findings, and a case for every finding.
 
     An error is a failure with its sentence; warnings and what is left out pass and have theirs as output. The name of
@@ -154,13 +181,24 @@ def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], lo
     for file, found in checks:
         file, names = look.data(file), Counter[str]()
         broken = sum(one["severity"] == "error" for one in found)
-        counts = {"tests": str(max(len(found), 1)), "failures": str(broken), "errors": "0", "skipped": "0"}
+        counts = {
+            "tests": str(max(len(found), 1)),
+            "failures": str(broken),
+            "errors": "0",
+            "skipped": "0",
+        }
         suite = ElementTree.SubElement(root, "testsuite", {"name": file, **counts})
         if not found:  # a file of results without a test counts as a fault
             ElementTree.SubElement(suite, "testcase", classname=file, name="valid machine")
         for one in found:
-            error, key, message = one["severity"] == "error", one["key"] or "", look.data(one["message"])
-            of_limit = key.startswith(("limits.", "expect.")) and message.startswith(key.partition(".")[2])
+            error, key, message = (
+                one["severity"] == "error",
+                one["key"] or "",
+                look.data(one["message"]),
+            )
+            of_limit = key.startswith(("limits.", "expect.")) and message.startswith(
+                key.partition(".")[2]
+            )
             if error and not of_limit and not message.startswith(key):
                 message = f"{key}: {message}"
             name = message.partition(": ")[0] if of_limit else message
@@ -169,7 +207,9 @@ def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], lo
             case = ElementTree.SubElement(suite, "testcase", classname=file, name=name)
             if error:
                 place = ":".join(str(part) for part in (file, one["line"], one["column"]) if part)
-                ElementTree.SubElement(case, "failure", message=message, type="error").text = f"{place}: {message}"
+                ElementTree.SubElement(
+                    case, "failure", message=message, type="error"
+                ).text = f"{place}: {message}"
             else:
                 ElementTree.SubElement(case, "system-out").text = message
     ElementTree.indent(root, "")

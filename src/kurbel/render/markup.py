@@ -81,7 +81,7 @@ class Markdown(Writer):
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return title, heads, and the line that sets the alignment of the columns."""
         titles = [f"{symbol} ({unit})" if unit else symbol.strip() for symbol, unit in heads]
-        rules = ["---" if one.words else "--:" for one in table.columns]
+        rules = ["---" if column.words else "--:" for column in table.columns]
         titled = f"\n### {caption}\n" if caption else ""
         return f"{titled}\n{self.row(table, 0, titles)}{self.row(table, 0, rules)}"
 
@@ -103,7 +103,7 @@ class Html(Writer):
         φ<sub>P=0</sub> T<sub>max</sub> <span class="n">5.1 kN</span>
         """
         parts = subscripts(measures().sub(r'<span class="n">\g<0></span>', self.text(plain)))
-        parts[1::2] = [f"<sub>{one}</sub>" for one in parts[1::2]]
+        parts[1::2] = [f"<sub>{part}</sub>" for part in parts[1::2]]
         return "".join(parts)
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
@@ -128,7 +128,9 @@ class Html(Writer):
             if k >= table.heads:
                 shown.append(f"<td{right}>{cell}</td>")
             else:
-                shown.append(f'<th scope="row"{right}>{cell.replace(".", ".<wbr>") if column.words else cell}</th>')
+                shown.append(
+                    f'<th scope="row"{right}>{cell.replace(".", ".<wbr>") if column.words else cell}</th>'
+                )
         verdict = f' class="{table.verdicts[number]}"' if table.verdicts else ""
         return f"<tr{verdict}>{''.join(shown)}</tr>\n"
 
@@ -196,7 +198,7 @@ class Latex(Writer):
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         r"""Return the beginning of a table; by \tabcolsep ten columns of numbers fit the 345 pt of an article."""
         layouts = {"number": "r", "name": "l", "symbol": "l", "sentence": "p{0.42\\linewidth}"}
-        layout = "".join(layouts[one.kind] for one in table.columns)
+        layout = "".join(layouts[column.kind] for column in table.columns)
         text = f"{{\\small\\setlength{{\\tabcolsep}}{{3pt}}\\begin{{longtable}}{{@{{}}{layout}@{{}}}}\n"
         if caption:
             text += f"\\multicolumn{{{len(heads)}}}{{@{{}}l}}{{{caption}}}\\\\\n"
@@ -240,7 +242,7 @@ def listed(title: str, sentences: Collection[str], out: Writer) -> Iterator[str]
     """Yield a list of sentences under a title, or nothing if there are none."""
     if sentences:
         yield out.list_head.format(out.text(title))
-        yield from (out.item.format(out.prose(one)) for one in sentences)
+        yield from (out.item.format(out.prose(sentence)) for sentence in sentences)
         yield out.list_end
 
 
@@ -253,8 +255,8 @@ def over_angle(report: Report, out: Writer) -> Iterator[TextTable]:
 
 def of_places(report: Report, out: Writer) -> Iterator[TextTable]:
     """Yield the tables of places, in parts that are not too wide."""
-    for one in report.printed_tables:
-        yield from _parts_of(place_table(one, out.look), out)
+    for printed_table in report.printed_tables:
+        yield from _parts_of(place_table(printed_table, out.look), out)
 
 
 def _parts_of(table: TextTable, out: Writer) -> Iterator[TextTable]:
@@ -267,12 +269,20 @@ def _parts_of(table: TextTable, out: Writer) -> Iterator[TextTable]:
 
 def written(tables: Iterable[TextTable], out: Writer) -> Iterator[str]:
     """Yield tables row by row."""
-    escapes = {"number": out.text, "name": out.sentence, "symbol": out.symbol, "sentence": out.sentence}
+    escapes = {
+        "number": out.text,
+        "name": out.sentence,
+        "symbol": out.symbol,
+        "sentence": out.sentence,
+    }
     for table in tables:
-        heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
+        heads = [
+            ((out.text if column.words else out.symbol)(column.symbol), out.text(column.unit))
+            for column in table.columns
+        ]
         yield out.table_head(table, out.text(table.caption), heads)
-        of_columns = [escapes[one.kind] for one in table.columns]
-        for number, row in enumerate(zip(*(one.cells for one in table.columns))):
+        of_columns = [escapes[column.kind] for column in table.columns]
+        for number, row in enumerate(zip(*(column.cells for column in table.columns))):
             cells = [
                 out.strong.format(out.text(text[:-1])) if text.endswith(MARK) else escaped(text)
                 for escaped, text in zip(of_columns, map(str.strip, row))
@@ -284,11 +294,11 @@ def written(tables: Iterable[TextTable], out: Writer) -> Iterator[str]:
 def markup(report: Report, look: Look) -> Iterator[str]:
     """Return the text of the report in the format of the look; in HTML it is a page of its own."""
     if look.format == "html":
-        return page(look.text(report.title), document(report, Html(look)), page_css())
+        return html_page(look.text(report.title), document(report, Html(look)), page_css())
     return document(report, Latex(look) if look.format == "latex" else Markdown(look))
 
 
-def page(title: str, main: Iterable[str], style: str) -> Iterator[str]:
+def html_page(title: str, main: Iterable[str], style: str) -> Iterator[str]:
     """Yield a self-contained page: no script, nothing from elsewhere, which the browser enforces."""
     yield (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'

@@ -12,7 +12,7 @@ from typing import BinaryIO, TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.text import BLANK, Line, in_two_columns, paragraph, plain
+from kurbel.render.text import BLANK, Line, in_two_columns, paragraph, plain_lines
 
 STYLES = {
     "title": "bold",
@@ -24,7 +24,10 @@ STYLES = {
     "mark": "bold red",
     "cell": "",
     "text": "",
-    **{f"curve{number}": style for number, style in enumerate(("bold", "blue", "red", "green", "magenta", "yellow"))},
+    **{
+        f"curve{number}": style
+        for number, style in enumerate(("bold", "blue", "red", "green", "magenta", "yellow"))
+    },
 }
 """Role of a piece of a line -> its colour."""
 _AT_ONCE = 1 << 20
@@ -34,17 +37,19 @@ _AT_ONCE = 1 << 20
 # lists of the commands that print no report
 
 
-def listing(title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]], look: Look) -> str:
+def listing(
+    title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]], look: Look
+) -> str:
     """Return a title and sections, each a head line with its entries, as plain text."""
     lines = paragraph(look.text(title), look.width)
     for name, entries in sections:
         lines += [BLANK, *paragraph(look.text(name), look.width), *in_two_columns(entries, look)]
-    return "".join(plain(lines))
+    return "".join(plain_lines(lines))
 
 
 def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
     """Write heads in a column, each with its text, to a file or to standard output."""
-    write_out(plain(in_two_columns(found, look_at(file_name, Look()), "")), file_name)
+    write_out(plain_lines(in_two_columns(found, look_at(file_name, Look()), "")), file_name)
 
 
 # standard output
@@ -60,7 +65,8 @@ def look_at(file_name: str | None, look: Look) -> Look:
     stdout = _stdout()
     measured = stdout.isatty() or os.environ.get("COLUMNS", "").isdecimal()
     return look._replace(
-        encoding=stdout.encoding or "utf-8", width=look.width or (terminal_size()[0] if measured else None)
+        encoding=stdout.encoding or "utf-8",
+        width=look.width or (terminal_size()[0] if measured else None),
     )
 
 
@@ -83,15 +89,17 @@ def _stdout() -> TextIO:
 def write_lines(lines: Iterable[Line], look: Look) -> None:
     """Write lines to standard output, in colour on a terminal unless colours are not wanted."""
     if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
-        write_out(plain(lines), None, look.encoding)
+        write_out(plain_lines(lines), None, look.encoding)
         return
     from rich.console import Console  # takes longer to load than most tables to print
     from rich.text import Text
 
     # a width, and a height with it, or rich believes a COLUMNS=0 of the environment and prints nothing
-    console = Console(width=look.width, height=25, highlight=False, markup=False, emoji=False, soft_wrap=True)
-    for one in lines:  # as Text objects: a string would lose its brackets as markup
-        console.print(Text.assemble(*((piece.text, STYLES[piece.role]) for piece in one)))
+    console = Console(
+        width=look.width, height=25, highlight=False, markup=False, emoji=False, soft_wrap=True
+    )
+    for line in lines:  # as Text objects: a string would lose its brackets as markup
+        console.print(Text.assemble(*((piece.text, STYLES[piece.role]) for piece in line)))
 
 
 def silence(stream: TextIO) -> None:
@@ -153,7 +161,9 @@ def opened(file_name: str | None, resumed: int | None = None) -> Iterator[Binary
 def _replacing(target: str, resumed: int | None) -> Iterator[BinaryIO]:
     """Yield a new file next to a target, which it replaces with the same mode; an empty one is removed."""
     ending = f".kurbel-{os.urandom(8).hex()}"
-    path = f"{target}.part" if resumed is not None else os.path.join(os.path.dirname(target), ending)
+    path = (
+        f"{target}.part" if resumed is not None else os.path.join(os.path.dirname(target), ending)
+    )
     if resumed and not os.path.isfile(path):
         with open(target, "rb") as old, open(path, "wb") as file:
             file.writelines(iter(lambda: old.read(_AT_ONCE), b""))
@@ -202,4 +212,6 @@ def refuse_overwriting(file_name: str | None, read: Iterable[str]) -> None:
             status = os.stat(0 if other == "-" else other)
             if stat.S_ISREG(status.st_mode) and _is_same(status, file_name):
                 shown = "standard input" if other == "-" else other
-                raise UsageError(f"{file_name} would overwrite {shown}, which is read; name another file")
+                raise UsageError(
+                    f"{file_name} would overwrite {shown}, which is read; name another file"
+                )

@@ -7,8 +7,26 @@ from itertools import chain, islice
 
 from kurbel.render import Look
 from kurbel.render.output import terminal_size
-from kurbel.render.text import BLANK, Line, Piece, in_two_columns, line, padded, paragraph, sentence, width
-from kurbel.render.text_tables import MARK, TextColumn, headed, key_value_table, part_name, place_table, sheets
+from kurbel.render.text import (
+    BLANK,
+    Line,
+    Piece,
+    in_two_columns,
+    line,
+    padded,
+    paragraph,
+    sentence,
+    width,
+)
+from kurbel.render.text_tables import (
+    MARK,
+    TextColumn,
+    headed,
+    key_value_table,
+    part_name,
+    place_table,
+    sheets,
+)
 from kurbel.tables.tables import KeyValue, Report, first_selection, shown_once
 
 _NINE = 9  # angles to a block: the book breaks after 80°
@@ -18,7 +36,7 @@ _GAP, _ROW_GAP = 2, 3
 _LONGEST = 16  # of a number, or two angles; a longer list gets lines of its own
 
 
-def page(report: Report, look: Look) -> Iterator[Line]:
+def page_lines(report: Report, look: Look) -> Iterator[Line]:
     """Yield the lines of the whole page."""
     report = shown_once(report)
     yield from paragraph(look.text(report.title), look.width, "title")
@@ -39,10 +57,15 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         yield from (BLANK, *paragraph(shown.caption, look.width, "name"))
         # without names the first column names the rows; a name that repeats the one above stays blank
         hidden = shown.heads and not table.headed
-        side = [one._replace(symbol="") if hidden else one for one in shown.columns[: shown.heads or 1]]
+        side = [
+            column._replace(symbol="") if hidden else column
+            for column in shown.columns[: shown.heads or 1]
+        ]
         if len(side) > 1:
             repeated = zip(side[0].cells, ("", *side[0].cells))
-            side[0] = side[0]._replace(cells=["" if name == above else name for name, above in repeated])
+            side[0] = side[0]._replace(
+                cells=["" if name == above else name for name, above in repeated]
+            )
         yield from blocks(side, shown.columns[len(side) :], look)
 
     if notes := [note for note in (report.mirrored, *report.notes) if note]:
@@ -51,7 +74,11 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         name = part_name(report, part, look)
         of = f": {name}" if name else ""
         if part.key_values:
-            yield from (BLANK, line(f"Key values{of}", "name"), *_key_value_lines(part.key_values, look))
+            yield from (
+                BLANK,
+                line(f"Key values{of}", "name"),
+                *_key_value_lines(part.key_values, look),
+            )
         if part.left_out:
             yield from (BLANK, line(f"Left out{of}", "name"), *in_two_columns(part.left_out, look))
         if part.warnings:
@@ -61,20 +88,24 @@ def page(report: Report, look: Look) -> Iterator[Line]:
 
 def fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line]:
     """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
-    lines, most = page(report, look), terminal_size()[1]
+    lines, most = page_lines(report, look), terminal_size()[1]
     begin = list(islice(lines, most)) if sys.stdout.isatty() else []
     if len(begin) < most:
         return chain(begin, lines)
     across = max(((look.width or 80) - _SIDE) // _CELL, 4)
-    return page(first_selection(report, first, across, rows=most // 6), look)
+    return page_lines(first_selection(report, first, across, rows=most // 6), look)
 
 
 # a line for each row
 
 
-def blocks(side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int = _GAP) -> Iterator[Line]:
+def blocks(
+    side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int = _GAP
+) -> Iterator[Line]:
     """Yield block under block, each with the side columns and as many others as fit the width, at least one."""
-    every = [(one, max(map(width, (one.symbol, one.unit, *one.cells)))) for one in (*side, *columns)]
+    every = [
+        (one, max(map(width, (one.symbol, one.unit, *one.cells)))) for one in (*side, *columns)
+    ]
     before, blocks = len(side), [every[: len(side)]]
     for sized in every[before:]:
         wide = sum(one + gap for _, one in blocks[-1]) + sized[1]
@@ -93,9 +124,14 @@ def blocks(side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look
         yield rule
 
 
-def _row(block: Sequence[tuple[TextColumn, int]], gap: int, texts: Sequence[str], role: str) -> Line:
+def _row(
+    block: Sequence[tuple[TextColumn, int]], gap: int, texts: Sequence[str], role: str
+) -> Line:
     return tuple(
-        Piece(" " * gap * (number > 0) + padded(text, wide, not column.words), _role(text, column, role))
+        Piece(
+            " " * gap * (number > 0) + padded(text, wide, not column.words),
+            _role(text, column, role),
+        )
         for number, ((column, wide), text) in enumerate(zip(block, texts))
     )
 
@@ -108,7 +144,10 @@ def _role(text: str, column: TextColumn, role: str) -> str:
 
 
 def _book(
-    heads: Sequence[TextColumn], bands: Sequence[tuple[str, Sequence[TextColumn]]], named_beside: bool, look: Look
+    heads: Sequence[TextColumn],
+    bands: Sequence[tuple[str, Sequence[TextColumn]]],
+    named_beside: bool,
+    look: Look,
 ) -> Iterator[Line]:
     """Yield the columns in blocks of crank angles, nine each or as many as fit the width.
 
@@ -116,32 +155,55 @@ def _book(
     """
     rows = [*heads, *(row for _, band in bands for row in band)]
     cell = max((width(text) for row in rows for text in row.cells), default=0) + _GAP
-    texts = [name for name, _ in bands if named_beside], [row.symbol for row in rows], [row.unit for row in rows]
+    texts = (
+        [name for name, _ in bands if named_beside],
+        [row.symbol for row in rows],
+        [row.unit for row in rows],
+    )
     # of names, symbols and units; a column without a text takes no room
-    name, symbol, unit = (wide and wide + _GAP for wide in (max(map(width, each), default=0) for each in texts))
+    name, symbol, unit = (
+        wide and wide + _GAP for wide in (max(map(width, each), default=0) for each in texts)
+    )
     if look.width is not None and look.width < name + symbol + unit + 2 * cell:
         name = 0
     side = name + symbol + unit
 
     def book_line(band: str, row: TextColumn, across: slice, role: str = "symbol") -> Line:
         label = padded(row.symbol, symbol - _GAP, role == "head") + " " * _GAP
-        pieces = [Piece(padded(band, name), "name"), Piece(label, role), Piece(padded(row.unit, unit), "unit")]
+        pieces = [
+            Piece(padded(band, name), "name"),
+            Piece(label, role),
+            Piece(padded(row.unit, unit), "unit"),
+        ]
         number = "head" if role == "head" else "cell"
         return (
             *pieces,
-            *(Piece(padded(text, cell, True), _role(text, row, number)) for text in row.cells[across]),
+            *(
+                Piece(padded(text, cell, True), _role(text, row, number))
+                for text in row.cells[across]
+            ),
         )
 
     start, count = 0, len(heads[0].cells)
-    for size in book_sizes(count) if look.width is None else fitting_sizes(count, (look.width - side) // cell):
+    for size in (
+        book_sizes(count)
+        if look.width is None
+        else fitting_sizes(count, (look.width - side) // cell)
+    ):
         yield from (BLANK,) if start else ()
-        across, rule = slice(start, start + size), line(look.text("─") * (side + size * cell), "rule")
+        across, rule = (
+            slice(start, start + size),
+            line(look.text("─") * (side + size * cell), "rule"),
+        )
         yield from (book_line("", head, across, "head") for head in heads)
         for band, columns in bands:
             yield rule
             if band and not name:
                 yield line(band, "name")
-            yield from (book_line("" if k or not name else band, row, across) for k, row in enumerate(columns))
+            yield from (
+                book_line("" if k or not name else band, row, across)
+                for k, row in enumerate(columns)
+            )
         yield rule
         start += size
 
@@ -155,7 +217,11 @@ def book_sizes(count: int) -> list[int]:
 def fitting_sizes(count: int, most: int) -> list[int]:
     """Return blocks of nearly equal length of at most `most` angles, the longer ones last."""
     blocks = -(-count // max(most, 1))
-    return [count // blocks + (index >= blocks - count % blocks) for index in range(blocks)] if count else []
+    return (
+        [count // blocks + (index >= blocks - count % blocks) for index in range(blocks)]
+        if count
+        else []
+    )
 
 
 # sentences and key values
@@ -165,7 +231,7 @@ def _key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[L
     """Yield a line for each key value: symbol, value, unit, crank angle, meaning; those of one heading together."""
     groups = headed(key_values)
     table = key_value_table("", [one for group in groups.values() for one in group], look)
-    symbols, shown, units, angles, meanings = (one.cells for one in table.columns)
+    symbols, shown, units, angles, meanings = (column.cells for column in table.columns)
     numbers = _below_one_another(shown, table.lists)
     angles = [f"at {one}" if one else "" for one in angles]
     symbol, unit, angle = (max(map(width, each)) for each in (symbols, units, angles))
@@ -192,7 +258,9 @@ def _key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[L
 
 def _below_one_another(texts: Sequence[str], lists: Collection[int]) -> list[str]:
     """Return numbers with their decimal points below one another, where whole ones end, too; lists: rows of lists."""
-    wholes = ["" if row in lists else re.findall(r"^-?\d+|$", text)[0] for row, text in enumerate(texts)]
+    wholes = [
+        "" if row in lists else re.findall(r"^-?\d+|$", text)[0] for row, text in enumerate(texts)
+    ]
     before = max(map(len, wholes))
     pairs = [(whole, text[len(whole) :]) for whole, text in zip(wholes, texts)]
     return [whole.rjust(before) + (rest or " ") if whole else rest for whole, rest in pairs]

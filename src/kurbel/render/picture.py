@@ -46,7 +46,10 @@ def legend_text(words: Words, look: Look) -> str:
 
 def figure_text(figure: PageFigure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
-    name, at = symbol(figure.name, look), "" if figure.at_deg is None else look.degrees(figure.at_deg)
+    name, at = (
+        symbol(figure.name, look),
+        "" if figure.at_deg is None else look.degrees(figure.at_deg),
+    )
     if figure.value is None:
         return f"{name} {at}".strip()
     value, unit = look.measured(figure.value, figure.unit)
@@ -56,7 +59,9 @@ def figure_text(figure: PageFigure, look: Look) -> str:
 
 def picture_text(picture: Picture, look: Look) -> str:
     """Return a picture in words: what it shows, and every figure in it."""
-    figures = [mark.figure for panel in picture.panels for mark in panel.marks if mark.figure.name.symbol]
+    figures = [
+        mark.figure for panel in picture.panels for mark in panel.marks if mark.figure.name.symbol
+    ]
     figures += [shade.figure for panel in picture.panels for shade in panel.shades if shade.figure]
     texts = "; ".join(dict.fromkeys(figure_text(figure, look) for figure in figures))
     sentence = f"{look.text(picture.heading)}. {look.text(picture.text)}"
@@ -77,17 +82,22 @@ class AxisScale(NamedTuple):
 
     def place(self, values: Number) -> Array:
         """Return the places of values."""
-        low, high, at = (np.log10(one) if self.axis.log else np.asarray(one) for one in (self.low, self.high, values))
+        low, high, at = (
+            np.log10(one) if self.axis.log else np.asarray(one)
+            for one in (self.low, self.high, values)
+        )
         # what is between two dots goes to the same one on every processor, whose sines differ in the last digit
         return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
 
 
-def scale_of(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisScale:
+def axis_scale(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisScale:
     """Return the scale from 0 to 1 of an axis, which includes all that is drawn.
 
     air: with free space around it; level: a level line is in the middle.
     """
-    every = np.concatenate([*map(np.ravel, drawn), [one for one in (axis.low, axis.high) if one is not None]])
+    every = np.concatenate(
+        [*map(np.ravel, drawn), [one for one in (axis.low, axis.high) if one is not None]]
+    )
     low, high = (float(np.nanmin(every)), float(np.nanmax(every))) if len(every) else (0.0, 0.0)
     if axis.log:
         low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high) or 1)
@@ -118,7 +128,10 @@ def ticks(scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:
         values = [float(f"{number * step:.12g}") for number in range(first, last + 1)]
         small = len(values) > 1 and values[-1] - values[0] < 1e-4
         short = small or max(map(abs, values), default=0.0) >= 1e6
-        texts = [look.fine(f"{value:.4g}" if short else cell(value, head_scale(values))) for value in values]
+        texts = [
+            look.fine(f"{value:.4g}" if short else cell(value, head_scale(values)))
+            for value in values
+        ]
     return [(float(scale.place(value)), text) for value, text in zip(values, texts)]
 
 
@@ -166,22 +179,28 @@ class PanelFrame:
         self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
         across, up = panel.places
         bare = not panel.bodies  # which leave no air around them
-        x = scale_of(panel.x, across, bare and (panel.plain or panel.equal), not panel.equal)
-        y = scale_of(panel.y, up, bare, not panel.equal)
+        x = axis_scale(panel.x, across, bare and (panel.plain or panel.equal), not panel.equal)
+        y = axis_scale(panel.y, up, bare, not panel.equal)
         if panel.equal:
             sizes = np.array([x.high - x.low, y.high - y.low])
-            least = medium.shortest if panel.plain else min(0.8 * wide, 2 * medium.shortest)  # a flat curve has room
+            least = (
+                medium.shortest if panel.plain else min(0.8 * wide, 2 * medium.shortest)
+            )  # a flat curve has room
             tall = min(max(wide * sizes[1] / sizes[0] if sizes[0] else 0.0, least), medium.tallest)
             room = np.array([wide, tall])
             spare = (max(*(sizes / room), _ROUNDING) * room - sizes) / 2
-            x, y = (one._replace(low=one.low - more, high=one.high + more) for one, more in zip((x, y), spare))
+            x, y = (
+                one._replace(low=one.low - more, high=one.high + more)
+                for one, more in zip((x, y), spare)
+            )
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
         names, between = panel.x.names, abs(self.points_per_unit)
         numeric = all(name.replace(".", "", 1).isdecimal() for name in names)
         if not numeric and any((width(name) + 1) * medium.letter > between for name in names):
             # names that do not fit below the axis have numbers there, and follow it
             key = ", ".join(
-                f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names, 1)
+                f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}")
+                for number, name in enumerate(names, 1)
             )
             numbers = tuple(str(number) for number, _ in enumerate(names, 1))
             self.x = self.x._replace(axis=panel.x._replace(name=Words(key), names=numbers))
@@ -226,7 +245,13 @@ class PanelFrame:
         ground += _TAKEN * self._cells([self.place(*point) + around for point in points])
         placed: list[Label | None] = []
 
-        def label(text: str, point: ComplexArray, of: int | None = None, led: bool = False, near: bool = False) -> None:
+        def label(
+            text: str,
+            point: ComplexArray,
+            of: int | None = None,
+            led: bool = False,
+            near: bool = False,
+        ) -> None:
             placed.append(self._on_free_ground(ground, text, complex(point), of, led, near))
 
         symbols = [symbol(curve.name, look) for curve in panel.curves]
@@ -242,7 +267,9 @@ class PanelFrame:
         for mark in (*figures, *(mark for mark in panel.marks if not mark.figure.name.symbol)):
             led = bool(mark.figure.name.symbol)
             label(figure_text(mark.figure, look), self.place(mark.x, mark.y), led=led, near=not led)
-        shades = [(one, one.figure, figure_text(one.figure, look)) for one in panel.shades if one.figure]
+        shades = [
+            (one, one.figure, figure_text(one.figure, look)) for one in panel.shades if one.figure
+        ]
         # their names alone where not each figure has the room
         roomy = all(width(text) * letter <= np.ptp(self.x.place(one.x)) for one, _, text in shades)
         for shade, figure, text in shades:
@@ -281,7 +308,10 @@ class PanelFrame:
         sums = np.pad(ground.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
         strips = sums[rows:] - sums[:-rows]
         covered = strips[:, columns:] - strips[:, :-columns]
-        left, top = grain[0] * np.arange(covered.shape[1]), grain[1] * np.arange(covered.shape[0])[:, None]
+        left, top = (
+            grain[0] * np.arange(covered.shape[1]),
+            grain[1] * np.arange(covered.shape[0])[:, None],
+        )
         across, down = np.clip(x, left, left + wide) - x, np.clip(y, top, top + tall) - y
         off_middle = np.abs(left + wide / 2 - x) + np.abs(top + tall / 2 - y)
         cost = (np.hypot(across, down) + 0.05 * off_middle + covered).round(6)
@@ -306,7 +336,9 @@ def looks_of(panel: Panel) -> list[int]:
 
 def dense(x: Array, y: Array) -> tuple[Array, Array]:
     """Return points along a line x, y (n,), neither coordinate of neighbours more than 1 apart."""
-    steps = np.maximum(np.ceil(np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y))) - 1e-6), 1).astype(int)
+    steps = np.maximum(
+        np.ceil(np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y))) - 1e-6), 1
+    ).astype(int)
     numbers, ends = np.arange(len(x)), np.append(0, steps.cumsum())
     along = np.interp(np.arange(ends[-1] + 1), ends, numbers)
     return np.interp(along, numbers, x), np.interp(along, numbers, y)

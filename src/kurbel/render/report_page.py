@@ -4,10 +4,22 @@ import re
 from collections.abc import Iterator
 
 from kurbel import __version__
-from kurbel.pictures.picture import Answers, Document, Fact, Facts, Grid, Item, Notice, OverAngle, Pair, Picture, Shown
+from kurbel.pictures.picture import (
+    Document,
+    Fact,
+    Facts,
+    FactValue,
+    Grid,
+    Notice,
+    OverAngle,
+    Pair,
+    Picture,
+    ReportAnswers,
+    SectionItem,
+)
 from kurbel.render import Look
 from kurbel.render.json_text import sha256_of
-from kurbel.render.markup import Html, listed, of_places, over_angle, page, written
+from kurbel.render.markup import Html, html_page, listed, of_places, over_angle, written
 from kurbel.render.style import LONG_REPORT, MOVING, PAIRS, PICTURE, PICTURE_COLOURS, page_css
 from kurbel.render.svg import svg
 from kurbel.render.text import DIGITS
@@ -23,17 +35,21 @@ def report_page(long: Document, look: Look, date: str) -> Iterator[str]:
     out = Html(look._replace(format="html"))
     pairs = PAIRS if len(long.provenance) > 1 else ""
     style = page_css(LONG_REPORT, pairs, PICTURE, PICTURE_COLOURS, MOVING)
-    yield from page(out.look.text(long.title), _parts(long, out, date), style)
+    yield from html_page(out.look.text(long.title), _parts(long, out, date), style)
 
 
 def _parts(long: Document, out: Html, date: str) -> Iterator[str]:
     """Yield title, first page, links, sections, and what it was made from."""
     yield f"<header>\n<h1>{out.words(long.title)}</h1>\n"
-    yield from (f'<p class="sub">{out.prose(one)}</p>\n' for one in long.subtitles if one)
+    yield from (
+        f'<p class="sub">{out.prose(subtitle)}</p>\n' for subtitle in long.subtitles if subtitle
+    )
     yield '</header>\n<section id="summary" aria-label="Summary">\n'
     for item in long.summary:
         yield from _item(item, out)
-    links = "".join(f'<li><a href="#{one.id}">{out.words(one.title)}</a></li>\n' for one in long.sections)
+    links = "".join(
+        f'<li><a href="#{one.id}">{out.words(one.title)}</a></li>\n' for one in long.sections
+    )
     yield f'</section>\n<nav aria-label="Contents">\n<ul>\n{links}</ul>\n</nav>\n'
     for section in long.sections:
         yield f'<section id="{section.id}">\n<h2>{out.words(section.title)}</h2>\n'
@@ -42,24 +58,27 @@ def _parts(long: Document, out: Html, date: str) -> Iterator[str]:
         yield "</section>\n"
     yield f"<footer>\n<p>{out.words(date)}, kurbel {__version__}</p>\n"
     for made_from in long.provenance:
-        files = [f"{one.file}: SHA-256 {sha256_of(one) or 'not known, the file is gone'}" for one in made_from.inputs]
-        files += [f"set over it: {one}" for one in made_from.overrides]
+        files = [
+            f"{one.file}: SHA-256 {sha256_of(one) or 'not known, the file is gone'}"
+            for one in made_from.inputs
+        ]
+        files += [f"set over it: {override}" for override in made_from.overrides]
         files += [f"{name} {version}" for name, version in made_from.versions.items()]
         yield from listed("Made from", files, out)
     yield "</footer>\n"
 
 
-def _item(item: Item, out: Html) -> Iterator[str]:
+def _item(item: SectionItem, out: Html) -> Iterator[str]:
     if isinstance(item, Picture):
         yield _figure(item, out)
-    elif isinstance(item, Answers):
+    elif isinstance(item, ReportAnswers):
         report = item.report
         for part in report.all_parts:
             if part.key_values:
                 name = part_name(report, part, out.look) or "Key values"
                 yield from written([key_value_table(name, part.key_values, out.look)], out)
         yield from written(of_places(report, out), out)
-        yield from (f"<p>{out.prose(one)}</p>\n" for one in report.notes)
+        yield from (f"<p>{out.prose(note)}</p>\n" for note in report.notes)
     elif isinstance(item, OverAngle):
         yield f"<h3>{out.words(item.title)}</h3>\n"
         yield from written(over_angle(item.report, out), out)
@@ -68,7 +87,7 @@ def _item(item: Item, out: Html) -> Iterator[str]:
     elif isinstance(item, PlaceTable):
         yield from written([place_table(item, out.look)], out)
     elif isinstance(item, Facts):
-        yield f'<div class="facts">\n{"".join(_fact(one, out) for one in item.facts)}</div>\n'
+        yield f'<div class="facts">\n{"".join(_fact(fact, out) for fact in item.facts)}</div>\n'
     elif isinstance(item, Notice):
         yield f'<p class="notice {item.kind}">{out.prose(item.text)}</p>\n'
     elif isinstance(item, Pair):
@@ -102,11 +121,13 @@ def _text_table(grid: Grid, look: Look) -> TextTable:
     columns = []
     for k, (head, cells) in enumerate(zip(grid.heads, zip(*grid.rows))):
         kind = "symbol" if head == "Symbol" else "number" if k in grid.numbers else "name"
-        columns.append(TextColumn(look.text(head), "", [_shown(one, head, look) for one in cells], kind))
+        columns.append(
+            TextColumn(look.text(head), "", [_shown(cell, head, look) for cell in cells], kind)
+        )
     return TextTable(look.text(grid.title), columns, 1, grid.verdicts)
 
 
-def _shown(cell: Shown, head: str, look: Look) -> str:
+def _shown(cell: FactValue, head: str, look: Look) -> str:
     if isinstance(cell, float):
         return look.value(cell, DIGITS)
     if isinstance(cell, tuple):

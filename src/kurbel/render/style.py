@@ -123,7 +123,9 @@ svg .still{display:none}
 
 def page_css(*more: str) -> str:
     """Return the style sheet of a page."""
-    light, dark = (";".join(f"--{name}:{both[mode]}" for name, both in COLOURS.items()) for mode in (0, 1))
+    light, dark = (
+        ";".join(f"--{name}:{both[mode]}" for name, both in COLOURS.items()) for mode in (0, 1)
+    )
     return f":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{PAGE}{''.join(more)}"
 
 

@@ -24,7 +24,9 @@ from kurbel.render.style import picture_css
 from kurbel.render.text import folded, subscripts, width
 
 # lengths in points from the upper left corner
-PAPER_SIZES = Medium(letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=40.0, shortest=110.0, tallest=460.0)
+PAPER_SIZES = Medium(
+    letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=40.0, shortest=110.0, tallest=460.0
+)
 WIDTH = 720.0
 _TALL, _SHORT = 250.0, 170.0
 """Height of a panel among at most two and of one among several."""
@@ -49,7 +51,7 @@ _POINTS = {"joint": ("o", 4.0), "fixed": ("i", 4.0), "beads": ("i", 1.6), "pole"
 _FIGURES = (0, 0), (4, 45), (3, 30), (4, 0), (3, 90), (6, 0), (5, 54)
 """Corners and turn of the figures that mark points, the first a circle. Seven of them and six colours."""
 
-Row = list[tuple[str, float, int | None]]
+LegendRow = list[tuple[str, float, int | None]]
 """Texts above a panel, each with its left end, and the number of the stroke before it, if any."""
 
 
@@ -75,7 +77,9 @@ def poster_svg(panel: Panel, look: Look, wide: bool) -> str:
     room, tallest = _POSTER if wide else _POSTER[::-1]
     frame = PanelFrame(panel, look, PAPER_SIZES._replace(tallest=tallest), room, tallest)
     tall = frame.tall + 30.0 + 15.0 * len(_footnote(frame))
-    return _svg("".join(_panel(frame, 0.0, True, ())), room, tall, 6.0, panel.title, picture_css(paper=True))
+    return _svg(
+        "".join(_panel(frame, 0.0, True, ())), room, tall, 6.0, panel.title, picture_css(paper=True)
+    )
 
 
 def _svg(items: str, wide: float, tall: float, margin: float, title: str, style: str = "") -> str:
@@ -93,30 +97,44 @@ def _svg(items: str, wide: float, tall: float, margin: float, title: str, style:
 def _drawn(picture: Picture, look: Look, paper: bool, headed: bool = True) -> tuple[float, str]:
     """Return the height of a picture and its items; headed: with its heading."""
     heading = folded(look.text(picture.heading), int(WIDTH / _BOLD)) if headed else []
-    items = "".join(_text((16 + 17 * number) * 1j, text, "h") for number, text in enumerate(heading))
+    items = "".join(
+        _text((16 + 17 * number) * 1j, text, "h") for number, text in enumerate(heading)
+    )
     below, last = 7.0 * headed + 17 * len(heading), len(picture.panels) - 1
     top, tall = below, _TALL if len(picture.panels) < 3 else _SHORT
     for number, panel in enumerate(picture.panels):
         column = number % picture.across
         # what is alone in the last row has all of it
-        each = WIDTH if number == last and column == 0 else (WIDTH + _GUTTER) / picture.across - _GUTTER
+        each = (
+            WIDTH
+            if number == last and column == 0
+            else (WIDTH + _GUTTER) / picture.across - _GUTTER
+        )
         if number and column == 0:
             top = below + 4
-        left, right, above, under = (0.0, 0.0, 18.0, 8.0) if panel.plain else (48.0, 12.0, 20.0, 18.0)
+        left, right, above, under = (
+            (0.0, 0.0, 18.0, 8.0) if panel.plain else (48.0, 12.0, 20.0, 18.0)
+        )
         frame = PanelFrame(panel, look, PAPER_SIZES, each - left - right, tall)
         legend = [] if panel.plain else _legend(frame, left)
         above += 14 * len(legend)
-        under += 12 * len(frame.below) + (18.0 + 15.0 * len(_footnote(frame)) if panel.footnote else 0.0)
+        under += 12 * len(frame.below) + (
+            18.0 + 15.0 * len(_footnote(frame)) if panel.footnote else 0.0
+        )
         corner = f"{column * (each + _GUTTER) + left:g} {top + above:g}"
         items += f'<g transform="translate({corner})">\n{"".join(_panel(frame, left, paper, legend))}</g>\n'
         below = max(below, top + above + frame.tall + under)
     for number, (name, mark) in enumerate(picture.legend):
         place = complex(12 + number % 4 * (WIDTH - 12) / 4, below + 18 + number // 4 * 16)
-        items += _shape(f"c{mark % LOOKS}", _dot(place - 4j, mark)) + _text(place + 9, symbol(name, look))
+        items += _shape(f"c{mark % LOOKS}", _dot(place - 4j, mark)) + _text(
+            place + 9, symbol(name, look)
+        )
     return below + 4 + (-(-len(picture.legend) // 4) * 16 + 8 if picture.legend else 0), items
 
 
-def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Row]) -> Iterator[str]:
+def _panel(
+    frame: PanelFrame, left: float, paper: bool, legend: Sequence[LegendRow]
+) -> Iterator[str]:
     """Yield what is on a panel, from below to above; what moves twice, in motion and at rest.
 
     left: the room at its left.
@@ -141,14 +159,25 @@ def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Row]) -
         resting = f'<g class="moving">{moving}</g>\n<g class="still">{resting}</g>\n'
     yield resting
     labels = frame.labels(named=False)
-    yield from (_shape("f", _path(np.array([one.point, one.lead]))) for one in labels if one.lead is not None)
-    yield from (_shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6)) for mark in panel.marks)
+    yield from (
+        _shape("f", _path(np.array([one.point, one.lead])))
+        for one in labels
+        if one.lead is not None
+    )
+    yield from (
+        _shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6)) for mark in panel.marks
+    )
     clear = -math.inf if panel.plain else _CLEAR  # of the axis
     for label in labels:
         yield _text(complex(max(label.left, clear), label.top + 9.5), label.text, "halo")
-    for one in panel.captions:
-        place = complex(frame.place(one.place.real, one.place.imag)) + 4.5j
-        yield _text(place, look.text(one.text), "mark strong" if one.strong else "mark note", "middle")
+    for caption in panel.captions:
+        place = complex(frame.place(caption.place.real, caption.place.imag)) + 4.5j
+        yield _text(
+            place,
+            look.text(caption.text),
+            "mark strong" if caption.strong else "mark note",
+            "middle",
+        )
     if panel.footnote:
         yield from _below(frame)
 
@@ -166,17 +195,27 @@ def _body(frame: PanelFrame, body: Body, paper: bool) -> str:
         # from where it rests, which has fewer digits
         ("translate", [_both(one) for one in moved], "0 0", ""),
     )
-    tints, shapes = [_number(one, 2) for one in body.tint], "".join(_part(shape, scale) for shape in body.shapes)
+    tints, shapes = (
+        [_number(one, 2) for one in body.tint],
+        "".join(_part(shape, scale) for shape in body.shapes),
+    )
 
     def drawn(animated: bool) -> str:
         found = shapes
         for kind, texts, nothing, last in steps:
             if set(texts if animated else texts[:1]) != {nothing}:
-                moves = _animated(f'Transform attributeName="transform" type="{kind}"', texts, last) if animated else ""
+                moves = (
+                    _animated(f'Transform attributeName="transform" type="{kind}"', texts, last)
+                    if animated
+                    else ""
+                )
                 found = f'<g transform="{kind}({texts[0]})">{moves}{found}</g>'
         tint, fades = "", ""
         if set(tints) != {"1"}:
-            tint, fades = f' opacity="{tints[0]}"', _animated(' attributeName="opacity"', tints) if animated else ""
+            tint, fades = (
+                f' opacity="{tints[0]}"',
+                _animated(' attributeName="opacity"', tints) if animated else "",
+            )
         return f'<g transform="translate({_both(places[0])})"{tint}>{fades}{found}</g>\n'
 
     if paper or not body.moves:
@@ -199,7 +238,9 @@ def _below(frame: PanelFrame) -> Iterator[str]:
     length = next(one * power for one in (5.0, 2.0, 1.0) if one * power * scale <= _LONGEST_BAR)
     end = length * scale
     yield _shape("thin", f"M0 {top - 3:g}v6m0-3h{end:.1f}m0-3v6")
-    yield _text(complex(end + 7.0, top + 4.0), f"{length:g} {frame.look.unit(frame.panel.x.unit)}", "note")
+    yield _text(
+        complex(end + 7.0, top + 4.0), f"{length:g} {frame.look.unit(frame.panel.x.unit)}", "note"
+    )
     for number, line in enumerate(_footnote(frame)):
         yield _text(complex(frame.wide, top + 4.0 + 15.0 * number), line, "note", "end")
 
@@ -209,13 +250,24 @@ def _footnote(frame: PanelFrame) -> list[str]:
     return folded(frame.look.text(frame.panel.footnote), int((frame.wide - 190.0) / _NOTE))
 
 
-def _legend(frame: PanelFrame, left: float) -> list[Row]:
+def _legend(frame: PanelFrame, left: float) -> list[LegendRow]:
     """Return what is above a panel: its title, what runs upward, and of several curves each with its stroke."""
     panel, look = frame.panel, frame.look
-    named = [(curve, number) for curve, number in zip(panel.curves, looks_of(panel)) if curve.kind == "line"]
-    texts: list[tuple[str, int | None]] = [(look.text(panel.title), None), (axis_text(panel.y, look), None)]
-    texts += [(legend_text(curve.name, look), number) for curve, number in named] if len(named) > 1 else []
-    rows, at = list[Row](), math.inf
+    named = [
+        (curve, number)
+        for curve, number in zip(panel.curves, looks_of(panel))
+        if curve.kind == "line"
+    ]
+    texts: list[tuple[str, int | None]] = [
+        (look.text(panel.title), None),
+        (axis_text(panel.y, look), None),
+    ]
+    texts += (
+        [(legend_text(curve.name, look), number) for curve, number in named]
+        if len(named) > 1
+        else []
+    )
+    rows, at = list[LegendRow](), math.inf
     for text, number in texts:
         wide = PAPER_SIZES.letter * width(text) + (0 if number is None else 30)
         if text and at + wide > frame.wide + 12:
@@ -227,17 +279,22 @@ def _legend(frame: PanelFrame, left: float) -> list[Row]:
     return rows
 
 
-def _around(frame: PanelFrame, left: float, legend: Sequence[Row]) -> Iterator[str]:
+def _around(frame: PanelFrame, left: float, legend: Sequence[LegendRow]) -> Iterator[str]:
     """Yield thin lines with their values, what runs along the axes, and above which stroke is which quantity."""
     wide, tall = frame.wide, frame.tall
     across = frame.ticks_across(max(3, int(wide / 64)), -left, wide + 8)
     up = ticks(frame.y, int(tall / 30), frame.look)
     lines = [_path(np.array([place, place + 1j * tall])) for place, _, _ in across]
     lines += [_path(np.array([1j * place, wide + 1j * place])) for place, _ in up]
-    yield _shape("g", "".join(lines)) + _shape("x", _path(np.array([0.0, 1j * tall, wide + 1j * tall])))
+    yield _shape("g", "".join(lines)) + _shape(
+        "x", _path(np.array([0.0, 1j * tall, wide + 1j * tall]))
+    )
     yield from (_text(complex(start, tall + 14), text) for _, start, text in across if text)
     yield from (_text(complex(-6, place + 3.5), text, anchor="end") for place, text in up)
-    yield from (_text(complex(wide, tall + 27 + 12 * k), text, anchor="end") for k, text in enumerate(frame.below))
+    yield from (
+        _text(complex(wide, tall + 27 + 12 * k), text, anchor="end")
+        for k, text in enumerate(frame.below)
+    )
     for k, row in enumerate(reversed(legend)):
         base = -1j * (10 + 14 * k)
         for text, at, number in row:
@@ -300,7 +357,7 @@ def thinned(places: ComplexArray) -> ComplexArray:
 def _path(places: ComplexArray) -> str:
     rounded = np.round(places, 1)
     steps = (np.round(np.diff(rounded), 1) + 0.0).tolist()  # a call for each point would take long
-    return f"M{_both(rounded[0])}{'l' if steps else ''}{' '.join([f'{one.real:g} {one.imag:g}' for one in steps])}"
+    return f"M{_both(rounded[0])}{'l' if steps else ''}{' '.join([f'{step.real:g} {step.imag:g}' for step in steps])}"
 
 
 def _dot(middle: complex, figure: int, radius: float = 2.4) -> str:
@@ -319,7 +376,9 @@ def _shape(look: str, *paths: str) -> str:
     return f'<path class="{look}" d="{paths[0]}"{f">{moves}</path>" if moves else "/>"}\n'
 
 
-def _text(place: complex, text: str, look: str = "", anchor: str = "", loop: Sequence[complex] = ()) -> str:
+def _text(
+    place: complex, text: str, look: str = "", anchor: str = "", loop: Sequence[complex] = ()
+) -> str:
     """Return a text with its subscripts; loop: the places through which it moves."""
     first, *following = subscripts(text)
     words = escape(first)
@@ -328,7 +387,9 @@ def _text(place: complex, text: str, look: str = "", anchor: str = "", loop: Seq
         words += f'<tspan dy="-2">{escape(rest)}</tspan>' if rest else ""
     moves = _animated(' attributeName="x"', [_number(one.real) for one in loop])
     moves += _animated(' attributeName="y"', [_number(one.imag) for one in loop])
-    attributes = (f' class="{look}"' if look else "") + (f' text-anchor="{anchor}"' if anchor else "")
+    attributes = (f' class="{look}"' if look else "") + (
+        f' text-anchor="{anchor}"' if anchor else ""
+    )
     return f'<text{attributes} x="{_number(place.real)}" y="{_number(place.imag)}">{words}{moves}</text>\n'
 
 

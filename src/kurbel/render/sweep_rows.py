@@ -20,9 +20,9 @@ import numpy as np
 import kurbel
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.designs.answers import Cell, Design
-from kurbel.designs.chosen import Condition, Unit
+from kurbel.designs.chosen import RowCondition, Unit
 from kurbel.designs.find import Solutions
-from kurbel.designs.sweep import Sweep, rows_of
+from kurbel.designs.sweep import Sweep, computed_rows
 from kurbel.errors import UsageError
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
 from kurbel.pictures.picture_source import in_units, level
@@ -32,7 +32,7 @@ from kurbel.render.json_text import FORMAT
 from kurbel.render.markup import Markdown, written
 from kurbel.render.output import look_at, opened, write_out
 from kurbel.render.page import blocks
-from kurbel.render.text import plain, single
+from kurbel.render.text import plain_lines, single
 from kurbel.render.text_tables import TextColumn, TextTable
 
 _AT_LEAST_EVERY = 0.5
@@ -73,7 +73,7 @@ class Titles(NamedTuple):
 # rows as lines of text
 
 
-def lines_of(titles: Titles, look: Look) -> tuple[str, Callable[[Design], str]]:
+def head_and_row_lines(titles: Titles, look: Look) -> tuple[str, Callable[[Design], str]]:
     """Return the line of the heads, and what makes the line of a row, in csv or as JSON."""
     if look.format == "csv":
         csv_row = csv_line(look)
@@ -95,13 +95,16 @@ def _for_people(titles: Titles, look: Look, rows: Sequence[Design]) -> Iterator[
     cells = [[_cell(value, look) for value in titles.values(row)] for row in rows]
     columns = [
         TextColumn(
-            look.text(name), look.unit(unit), [row[k] for row in cells], "name" if name in titles.last else "number"
+            look.text(name),
+            look.unit(unit),
+            [row[k] for row in cells],
+            "name" if name in titles.last else "number",
         )
         for k, (name, unit) in enumerate(heads)
     ]
     if look.format == "markdown":
         return iter(["".join(written([TextTable("", columns, 1)], Markdown(look))).lstrip("\n")])
-    return plain(blocks(columns[:1], columns[1:], look))
+    return plain_lines(blocks(columns[:1], columns[1:], look))
 
 
 def _cell(value: Cell, look: Look) -> str:
@@ -154,19 +157,23 @@ def write_rows(
 
     following = counted()
     try:
-        first = list(islice(following, 1))  # before anything is opened: there may be none, for whatever reason
+        first = list(
+            islice(following, 1)
+        )  # before anything is opened: there may be none, for whatever reason
         with opened(file_name, resumed=kept.size) as file:
             if look.format == "parquet":
                 _write_parquet(file, titles, chain(first, following))
             else:
-                heads, line = lines_of(titles, look)
+                heads, line = head_and_row_lines(titles, look)
                 texts = chain([heads] if headed else [], map(line, chain(first, following)))
                 _write_lines(file, texts, look.encoding)
     except BaseException:
         some = f"{count} row{'s' * (count > 1)}"
         if count and not to_file:
             early(f"{some} written")
-        elif count and look.format != "parquet" and os.path.isfile(part := _part_of(str(file_name))):
+        elif (
+            count and look.format != "parquet" and os.path.isfile(part := _part_of(str(file_name)))
+        ):
             early(f"{part} holds {some}")
         raise
 
@@ -192,8 +199,15 @@ def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design]) -> No
         import pyarrow.parquet
     except ImportError:
         raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
-    stored = {"number": pyarrow.float64(), "text": pyarrow.string(), "list": pyarrow.list_(pyarrow.float64())}
-    types = [pyarrow.int64(), *(stored[one] for one in (*titles.types, *("text" for _ in titles.last)))]
+    stored = {
+        "number": pyarrow.float64(),
+        "text": pyarrow.string(),
+        "list": pyarrow.list_(pyarrow.float64()),
+    }
+    types = [
+        pyarrow.int64(),
+        *(stored[one] for one in (*titles.types, *("text" for _ in titles.last))),
+    ]
     schema = pyarrow.schema(zip(titles.whole, types))
     with pyarrow.parquet.ParquetWriter(file, schema) as writer:
         while group := list(islice(rows, _IN_A_GROUP)):
@@ -209,7 +223,12 @@ def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design]) -> No
 
 
 def kept_rows(
-    file_name: str, sweep: Sweep, titles: Titles, look: Look, rows: range, conditions: Sequence[Condition]
+    file_name: str,
+    sweep: Sweep,
+    titles: Titles,
+    look: Look,
+    rows: range,
+    conditions: Sequence[RowCondition],
 ) -> tuple[Kept, range]:
     """Return what a file, or the part of it that an early end left, has of these rows, and those still to be computed.
 
@@ -219,9 +238,11 @@ def kept_rows(
     path = part if os.path.isfile(part := _part_of(file_name)) else file_name
     if not os.path.isfile(path):  # a device or a pipe, which may have no end, keeps nothing
         return Kept(), rows
-    heads, line_of = lines_of(titles, look)
+    heads, line_of = head_and_row_lines(titles, look)
     head = heads.encode() if rows.start == 0 else b""
-    begin_of = lines_of(Titles(titles.names[: len(sweep.plan.inputs)], row=titles.row), look)[1]
+    begin_of = head_and_row_lines(
+        Titles(titles.names[: len(sweep.plan.inputs)], row=titles.row), look
+    )[1]
 
     def refuse(why: str) -> NoReturn:
         raise UsageError(
@@ -238,17 +259,25 @@ def kept_rows(
     try:
         with open(path, "rb") as file:
             begin = next(file, b"")
-            if not (head.startswith(begin) if head else _NUMBER.match(begin) or b'{"row": '.startswith(begin)):
+            if not (
+                head.startswith(begin)
+                if head
+                else _NUMBER.match(begin) or b'{"row": '.startswith(begin)
+            ):
                 refuse(f"it begins with {_shown(begin)}")
             size = len(head) if begin == head else 0
             file.seek(size)
-            while lines := [line for line in islice(file, _COMPARED_AT_ONCE) if line.endswith(b"\n")]:
+            while lines := [
+                line for line in islice(file, _COMPARED_AT_ONCE) if line.endswith(b"\n")
+            ]:
                 numbers = []
                 for line in lines:
                     number = _NUMBER.match(line) or refuse(f"it has a line {_shown(line)}")
                     row = int(number[1]) - 1
                     if row not in rows:
-                        refuse(f"it has row {row + 1}, these are rows {rows.start + 1} to {rows.stop}")
+                        refuse(
+                            f"it has row {row + 1}, these are rows {rows.start + 1} to {rows.stop}"
+                        )
                     if row < following or (not conditions and row != following):
                         refuse(f"row {following + 1} is missing in it")
                     numbers.append(row)
@@ -261,9 +290,9 @@ def kept_rows(
         raise UsageError(f"cannot read {path}: {error.strerror}") from None
 
     if last:
-        computed = next(rows_of(sweep, range(following - 1, following)))
+        computed = next(computed_rows(sweep, range(following - 1, following)))
         compare(following, _words(last), _WORD.findall(line_of(computed)))
-        if not all(one.holds(computed) for one in conditions):
+        if not all(condition.holds(computed) for condition in conditions):
             refuse(f"row {following} is in it, which --where leaves out")
     return Kept(count, size), rows[following - rows.start :]
 
@@ -291,7 +320,10 @@ def as_rows(found: Solutions, system: str) -> tuple[Titles, list[Design]]:
     """Return a row for each solution: the keys in the units of their ranges, and the key values."""
     units = [(one.key, one.kind, one.unit) for one in found.varied]
     largest = [max(map(abs, values)) for values in zip(*(one.key_values for one in found.found))]
-    units += [(one.id, one.kind, shown_unit(one.kind, system, size)) for one, size in zip(found.heads, largest)]
+    units += [
+        (one.id, one.kind, shown_unit(one.kind, system, size))
+        for one, size in zip(found.heads, largest)
+    ]
     rows = [
         Design(number, tuple(float(convert(value, *of)) for value, (_, *of) in zip(values, units)))
         for number, values in enumerate(((*one.values, *one.key_values) for one in found.found), 1)
@@ -302,27 +334,36 @@ def as_rows(found: Solutions, system: str) -> tuple[Titles, list[Design]]:
 def as_json(found: Solutions) -> dict[str, object]:
     """Return the findings for JSON, all in SI."""
     quantities = [one.quantity for one in found.answers]
-    answers = [{"id": one.id, "symbol": of.symbol, "unit": one.unit} for one, of in zip(found.heads, quantities)]
+    answers = [
+        {"id": one.id, "symbol": of.symbol, "unit": one.unit}
+        for one, of in zip(found.heads, quantities)
+    ]
     ranges = [list(span) for span in found.met]
     return {
         "kurbel": kurbel.__version__,
         "format": FORMAT,
         "command": "find",
         "machine": found.machine,
-        "varied": [{"key": one.key, "low": one.low, "high": one.high, "unit": SI[one.kind]} for one in found.varied],
+        "varied": [
+            {"key": one.key, "low": one.low, "high": one.high, "unit": SI[one.kind]}
+            for one in found.varied
+        ],
         "wanted": [
-            {"id": one.head.id, "unit": one.head.unit, "aim": one.aim, "value": one.value} for one in found.wanted
+            {"id": one.head.id, "unit": one.head.unit, "aim": one.aim, "value": one.value}
+            for one in found.wanted
         ],
         "found": [
             {
                 "values": list(one.values),
-                "key_values": [{**answer, "value": value} for answer, value in zip(answers, one.key_values)],
+                "key_values": [
+                    {**answer, "value": value} for answer, value in zip(answers, one.key_values)
+                ],
                 "notes": list(one.notes),
             }
             for one in found.found
         ],
         "range": ranges[0] if len(ranges) == 1 else ranges,
-        "jumps": [list(one.values) for one in found.jumps],
+        "jumps": [list(jump.values) for jump in found.jumps],
         "failed": [{"low": one.low, "high": one.high, "failure": one.why} for one in found.failed],
     }
 
@@ -333,7 +374,7 @@ def picture(found: Solutions, system: str) -> Picture:
     places, values = found.places[:, 0], found.values[:, wanted.place]
     # one nan at a jump, two for a design that fails
     places, values = (np.repeat(one, 1 + np.isnan(values)) for one in (places, values))
-    jumps = np.searchsorted(places, [one.values[0] for one in found.jumps])
+    jumps = np.searchsorted(places, [jump.values[0] for jump in found.jumps])
     x, y = np.insert(places, jumps, np.nan), np.insert(values, jumps, np.nan)
     x = np.where(np.isnan(y), np.nan, x)
     quantity = found.answers[wanted.place].quantity
@@ -343,10 +384,17 @@ def picture(found: Solutions, system: str) -> Picture:
         curves.append(level(x, wanted.value, Words(wanted.text)))
     name = Words(key.key.rpartition(".")[2])
     marks = tuple(
-        Mark(one.values[0], one.key_values[wanted.place], PageFigure(name, one.values[0], kind=key.kind))
+        Mark(
+            one.values[0],
+            one.key_values[wanted.place],
+            PageFigure(name, one.values[0], kind=key.kind),
+        )
         for one in found.found
     )
-    across, up = Axis(Words(key.key), key.kind, low=key.low, high=key.high), Axis(symbol, wanted.head.kind)
+    across, up = (
+        Axis(Words(key.key), key.kind, low=key.low, high=key.high),
+        Axis(symbol, wanted.head.kind),
+    )
     panel = in_units(Panel(across, up, tuple(curves), marks=marks), system)
     text = "The key value over the key; marked where it is as wanted, parted where it jumps or designs fail."
     return Picture("find", f"{wanted.head.id} over {key.key}", text, (panel,), found.machine)
@@ -355,9 +403,13 @@ def picture(found: Solutions, system: str) -> Picture:
 def remarks(found: Solutions) -> list[str]:
     """Return the remarks on the solutions, a line each."""
     key = found.varied[0]
-    lines = [f"solution {number}: {note}" for number, one in enumerate(found.found, 1) for note in one.notes]
-    for one in found.jumps:
-        place = key.written(one.values[0], figures=9)
+    lines = [
+        f"solution {number}: {note}"
+        for number, one in enumerate(found.found, 1)
+        for note in one.notes
+    ]
+    for jump in found.jumps:
+        place = key.written(jump.values[0], figures=9)
         lines.append(f"{found.wanted[0].text}: passed by a jump at {key.key} = {place}")
     for part in found.failed:
         where = "at" if part.low == part.high else f"from {key.in_unit(part.low):.6g} to"

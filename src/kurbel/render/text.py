@@ -10,7 +10,7 @@ from unicodedata import combining, east_asian_width, normalize
 
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.quantity import GREEK
-from kurbel.tables.tables import Value
+from kurbel.tables.tables import CellValue
 
 # numbers
 
@@ -28,7 +28,7 @@ class Scale(NamedTuple):
     exponent: int = 0
 
 
-def scale_of(values: Iterable[Value], digits: int | None = None) -> Scale:
+def digit_scale(values: Iterable[CellValue], digits: int | None = None) -> Scale:
     """Return the scale that shows so many significant digits of the largest value.
 
     By default there are four, and whole numbers keep all of theirs; with `digits` they are rounded, too.
@@ -47,7 +47,7 @@ def scale_of(values: Iterable[Value], digits: int | None = None) -> Scale:
     return Scale(decimals if digits else max(0, decimals), exponent)
 
 
-def angle_scale(values: Iterable[Value], digits: int | None = None) -> Scale:
+def angle_scale(values: Iterable[CellValue], digits: int | None = None) -> Scale:
     """Return the scale of angles in degrees: two decimals, fewer if no angle has them; or so many digits.
 
     >>> angle_scale([79.27236, 90.0]), angle_scale([79.27236, 90.0], 6), angle_scale([0.0, 90.0])
@@ -55,11 +55,11 @@ def angle_scale(values: Iterable[Value], digits: int | None = None) -> Scale:
     """
     angles = [value for value in values if value is not None]
     if digits:
-        return Scale(max(0, scale_of(angles, digits).decimals))
+        return Scale(max(0, digit_scale(angles, digits).decimals))
     return Scale(_most_decimals(angles, 2))
 
 
-def head_scale(values: Sequence[Value], digits: int | None = None) -> Scale:
+def head_scale(values: Sequence[CellValue], digits: int | None = None) -> Scale:
     """Return the scale of the crank angles of a table, which distinguishes them all, with six decimals at most.
 
     Angles that were written keep their decimals; computed ones have as many digits as other angles.
@@ -70,12 +70,16 @@ def head_scale(values: Sequence[Value], digits: int | None = None) -> Scale:
     (Scale(decimals=3, exponent=0), Scale(decimals=3, exponent=0))
     """
     angles = [value for value in values if value is not None]
-    are_written = all(abs(value - round(value, _MOST_DECIMALS)) <= 1e-12 * abs(value) for value in angles)
+    are_written = all(
+        abs(value - round(value, _MOST_DECIMALS)) <= 1e-12 * abs(value) for value in angles
+    )
     if are_written:
         return Scale(_most_decimals(angles, _MOST_DECIMALS))
     decimals = angle_scale(angles, digits).decimals
     different = len({round(value, _MOST_DECIMALS) for value in angles})
-    while decimals < _MOST_DECIMALS and len({round(value, decimals) for value in angles}) < different:
+    while (
+        decimals < _MOST_DECIMALS and len({round(value, decimals) for value in angles}) < different
+    ):
         decimals += 1
     return Scale(decimals)
 
@@ -95,7 +99,7 @@ def _power(value: float, digits: int) -> int:
     return int(f"{abs(value):.{digits - 1}e}".partition("e")[2])
 
 
-def cell(value: Value, scale: Scale) -> str:
+def cell(value: CellValue, scale: Scale) -> str:
     """Return the value as a table shows it; an exact zero is `0` as in the book, no value is empty.
 
     >>> cell(-0.0142, Scale(3)), cell(-0.0001, Scale(3)), cell(0.0, Scale(3)), cell(81134.0, Scale(-3))
@@ -137,7 +141,9 @@ def single(value: float, digits: int | None = None, own: int = 0) -> tuple[str, 
     small, large = (-2, 5) if own else (_SMALL, _LARGE)
     exponent = 0 if small <= power < large else power
     decimals = count - 1 - power + exponent
-    return cell(value, Scale(decimals if digits and not own else max(0, decimals), exponent)), exponent
+    return cell(
+        value, Scale(decimals if digits and not own else max(0, decimals), exponent)
+    ), exponent
 
 
 def angle(value: float, decimals: int = 2) -> str:
@@ -150,7 +156,7 @@ def angle(value: float, decimals: int = 2) -> str:
     return text.rstrip("0").rstrip(".")
 
 
-def rounded(value: Value, digits: int | None) -> Value:
+def rounded(value: CellValue, digits: int | None) -> CellValue:
     """Return the value to this many significant digits; counts and None, or without `digits` all, as they are.
 
     >>> rounded(0.1, None), rounded(5, 2), rounded(-0.0, None), rounded(0.12345, 2)
@@ -161,7 +167,7 @@ def rounded(value: Value, digits: int | None) -> Value:
     return float(value if digits is None else f"{value:.{digits}g}") + 0.0
 
 
-def whole_if_integral(value: Value) -> Value:
+def whole_if_integral(value: CellValue) -> CellValue:
     """Return 10 for 10.0, so that angles and ratios are written as people write them."""
     return int(value) if value is not None and abs(value) < 1e15 and value == int(value) else value
 
@@ -227,7 +233,9 @@ class Look(NamedTuple):
         if self.has(text):
             return text
         plain = (normalize("NFKD", c).encode("ascii", "ignore").decode() for c in text)
-        return "".join(c if self.has(c) else _ASCII.get(c) or other or "?" for c, other in zip(text, plain))
+        return "".join(
+            c if self.has(c) else _ASCII.get(c) or other or "?" for c, other in zip(text, plain)
+        )
 
     def sentence(self, text: str) -> str:
         """Return a sentence for people, its numbers as they are wanted."""
@@ -329,7 +337,7 @@ def paragraph(text: str, cells: int | None, role: str = "text") -> list[Line]:
     return [line(one, role) for one in folded(text, cells)]
 
 
-def plain(lines: Iterable[Line]) -> Iterator[str]:
+def plain_lines(lines: Iterable[Line]) -> Iterator[str]:
     """Yield the lines as text, without blanks at their ends."""
     for pieces in lines:
         yield "".join(piece.text for piece in pieces).rstrip() + "\n"
@@ -340,10 +348,15 @@ def folded(text: str, cells: int | None) -> list[str]:
     if cells is None or width(text) <= cells:
         return [text]
     kept = measures().sub(lambda found: found[0].replace(" ", _NO_BREAK), text)
-    return [one.replace(_NO_BREAK, " ") for one in wrap(kept, cells, break_long_words=False, break_on_hyphens=False)]
+    return [
+        one.replace(_NO_BREAK, " ")
+        for one in wrap(kept, cells, break_long_words=False, break_on_hyphens=False)
+    ]
 
 
-def in_two_columns(found: Iterable[tuple[str, str]], look: Look, indent: str = "  ") -> Iterator[Line]:
+def in_two_columns(
+    found: Iterable[tuple[str, str]], look: Look, indent: str = "  "
+) -> Iterator[Line]:
     """Yield heads in a column, each with its sentence."""
     heads = [(look.text(head), text) for head, text in found]
     column = max((width(head) for head, _ in heads), default=0)
@@ -371,7 +384,7 @@ def measures() -> re.Pattern[str]:
     ['10 %', '2.35 kN m']
     """
     of_kinds = [each for system in SYSTEMS.values() for each in system.values()]
-    units = {unit for each in of_kinds for unit in ([each] if isinstance(each, str) else each)}
+    units = {unit for kind in of_kinds for unit in ([kind] if isinstance(kind, str) else kind)}
     printed = {"%", "°", *units, *map(Look().unit, units)} - {""}
     longest_first = "|".join(map(re.escape, sorted(printed, key=len, reverse=True)))
     return re.compile(rf"(?:\S|{_THIN})*\d  ?(?:{longest_first})(?!\w)")

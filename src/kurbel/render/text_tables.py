@@ -6,8 +6,17 @@ from typing import NamedTuple
 
 from kurbel.quantity import NOISE_POWER
 from kurbel.render import Look
-from kurbel.render.text import DIGITS, Scale, angle_scale, cell, head_scale, scale_of, single, whole_if_integral
-from kurbel.tables.tables import Column, KeyValue, Part, PlaceTable, Report, Value, grouped
+from kurbel.render.text import (
+    DIGITS,
+    Scale,
+    angle_scale,
+    cell,
+    digit_scale,
+    head_scale,
+    single,
+    whole_if_integral,
+)
+from kurbel.tables.tables import CellValue, Column, KeyValue, Part, PlaceTable, Report, grouped
 
 MARK = "*"
 _MOST_LISTED = 12
@@ -42,7 +51,9 @@ class TextTable(NamedTuple):
     lists: Collection[int] = ()
 
 
-def sheets(report: Report, look: Look) -> Iterator[tuple[list[TextColumn], list[tuple[str, list[TextColumn]]]]]:
+def sheets(
+    report: Report, look: Look
+) -> Iterator[tuple[list[TextColumn], list[tuple[str, list[TextColumn]]]]]:
     """Yield the columns of crank angles, and each part over these angles by its name, for each run of such parts."""
     parts = [part for part in report.all_parts if part.columns]
     for _, run in groupby(parts, lambda part: part.columns[0].values):
@@ -54,26 +65,43 @@ def sheets(report: Report, look: Look) -> Iterator[tuple[list[TextColumn], list[
             values = tuple(None if value is None else 360 - value for value in phi.values)
             symbol, ascii_symbol = f"360° − {phi.symbol}", f"360 - {phi.ascii_symbol}"
             angles.append(phi._replace(symbol=symbol, ascii_symbol=ascii_symbol, values=values))
-        heads = [_scaled(one, head_scale(one.values, look.digits), look, pad) for one in angles]
+        heads = [
+            _scaled(angle, head_scale(angle.values, look.digits), look, pad) for angle in angles
+        ]
         bands = []
         for part in alike:
-            scaled = [(one, scale_of((one.size,) if one.size else one.values, look.digits)) for one in part.columns[1:]]
-            bands.append((part_name(report, part, look), [_scaled(one, scale, look, pad) for one, scale in scaled]))
+            scaled = [
+                (one, digit_scale((one.size,) if one.size else one.values, look.digits))
+                for one in part.columns[1:]
+            ]
+            bands.append(
+                (
+                    part_name(report, part, look),
+                    [_scaled(one, scale, look, pad) for one, scale in scaled],
+                )
+            )
         yield heads, bands
 
 
-def _scaled(column: Column, scale: Scale, look: Look, pad: str = "", missing: str = "") -> TextColumn:
+def _scaled(
+    column: Column, scale: Scale, look: Look, pad: str = "", missing: str = ""
+) -> TextColumn:
     """Return a column whose cells all have the same decimals; pad: after those without a mark."""
     if column.decimals is not None:
         scale = Scale(column.decimals)
-    cells = [missing if value is None else look.number(cell(value, scale)) + pad for value in column.values]
+    cells = [
+        missing if value is None else look.number(cell(value, scale)) + pad
+        for value in column.values
+    ]
     for row in column.marked:
         cells[row] = cells[row].removesuffix(pad) + MARK
     return _headed(column, cells, look, scale.exponent)
 
 
 def _headed(column: Column, cells: Sequence[str], look: Look, exponent: int = 0) -> TextColumn:
-    return TextColumn(look.symbol(column.symbol, column.ascii_symbol), look.unit(column.unit, exponent), cells)
+    return TextColumn(
+        look.symbol(column.symbol, column.ascii_symbol), look.unit(column.unit, exponent), cells
+    )
 
 
 def part_name(report: Report, part: Part, look: Look) -> str:
@@ -92,10 +120,12 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
     """
     blank = "_" if table.headed else " "
     columns = [
-        TextColumn(head, "", [look.number(look.text(name.replace("_", blank))) for name in names], "name")
+        TextColumn(
+            head, "", [look.number(look.text(name.replace("_", blank))) for name in names], "name"
+        )
         for head, names in zip(table.heads, zip(*table.names))
     ]
-    sharing: dict[str, list[Value]] = {}
+    sharing: dict[str, list[CellValue]] = {}
     for column in table.columns:
         if column.decimals is None and not column.alone:
             sharing.setdefault(column.unit, []).extend(column.values)
@@ -106,7 +136,9 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
         elif column.alone:
             text_column = _each_scaled(column, column.alone, look, missing)
         elif column.unit == "deg":
-            text_column = _scaled(column, angle_scale(column.values, look.digits), look, missing=missing)
+            text_column = _scaled(
+                column, angle_scale(column.values, look.digits), look, missing=missing
+            )
         else:
             text_column = _visible(column, sharing[column.unit], look, missing)
         columns.append(text_column)
@@ -119,11 +151,13 @@ _MORE_DECIMALS = 2
 """So many more than the shared scale has are printed for a small value, before values get powers of ten."""
 
 
-def _visible(column: Column, sharing: Sequence[Value], look: Look, missing: str) -> TextColumn:
+def _visible(column: Column, sharing: Sequence[CellValue], look: Look, missing: str) -> TextColumn:
     """Return a column at the scale of all values that share its unit, or finer, so that none is printed as 0.0."""
-    shared = scale_of(sharing, look.digits)
+    shared = digit_scale(sharing, look.digits)
     largest = max((abs(value) for value in sharing if value is not None), default=0.0)
-    values = [0.0 if value and abs(value) <= _ROUNDING * largest else value for value in column.values]
+    values = [
+        0.0 if value and abs(value) <= _ROUNDING * largest else value for value in column.values
+    ]
     column = column._replace(values=values)
     smallest = min((abs(value) for value in values if value), default=largest)
     for more in range(_MORE_DECIMALS + 1):
@@ -150,7 +184,13 @@ def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> Te
         at = "" if one.at_deg is None else look.degrees(one.at_deg)
         symbol = look.symbol(one.symbol, one.ascii_symbol)
         rows.append((symbol, _value(one, look), look.unit(one.unit), at, look.sentence(one.text)))
-    heads = ("Symbol", "symbol"), ("Value", "number"), ("Unit", "name"), ("At", "number"), ("Meaning", "sentence")
+    heads = (
+        ("Symbol", "symbol"),
+        ("Value", "number"),
+        ("Unit", "name"),
+        ("At", "number"),
+        ("Meaning", "sentence"),
+    )
     columns = [TextColumn(head, "", cells, kind) for (head, kind), cells in zip(heads, zip(*rows))]
     lists = {row for row, one in enumerate(found) if isinstance(one.value, tuple) and one.value}
     return TextTable(caption, columns, 1, lists=lists)

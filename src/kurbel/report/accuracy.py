@@ -20,7 +20,7 @@ from kurbel.tables.tables import Column, LeftOut, Part, PlaceTable, Report
 
 Loads = Callable[[str], Machine]
 """Reads the text of a machine file; passed in by the command line, since reports do not import the reader."""
-Progress = Callable[[str, float], None]
+OnProgress = Callable[[str, float], None]
 """Called with what is computed, and the completed share."""
 NUMERICAL, SPEED = "numerical_error", "speed_error"
 """Ids of the tables that the picture is drawn from."""
@@ -41,7 +41,9 @@ _SPEED_NOTE = (
 )
 
 
-def accuracy_report(machine: Machine | None, quick: bool, loads: Loads, progress: Progress | None = None) -> Report:
+def accuracy_report(
+    machine: Machine | None, quick: bool, loads: Loads, progress: OnProgress | None = None
+) -> Report:
     """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and repeats.
 
     progress: called with the name of each scene and the share of them that is done.
@@ -63,7 +65,10 @@ def accuracy_report(machine: Machine | None, quick: bool, loads: Loads, progress
         "scenes",
         tuple(parts),
         notes=(*_NOTES, *((_SPEED_NOTE,) if has_speed else ()), *sentences),
-        head=(environment(), "Times are of this machine and this run; compare them only with one another."),
+        head=(
+            environment(),
+            "Times are of this machine and this run; compare them only with one another.",
+        ),
         provenance=partial(provenance, machine) if machine else None,
     )
 
@@ -129,15 +134,21 @@ def _of_rivals(name: str, rows: Sequence[trials.Trial]) -> list[str]:
     sentences = []
     equal = trials.with_corners(rows)
     if equal:
-        shown = "; ".join(f"{row.quantity} {ratio:.2g} ({row.method}, {row.points})" for row, ratio in equal)
+        shown = "; ".join(
+            f"{row.quantity} {ratio:.2g} ({row.method}, {row.points})" for row, ratio in equal
+        )
         sentences.append(
             f"{name}: given the corners and enough points, the fastest methods with the digits of kurbel take of its "
             f"time {shown}. kurbel finds corners and points itself."
         )
     rough = trials.without_corners(rows)
     if rough:
-        shown = "; ".join(f"{row.quantity} {row.error:.0e} ({row.method}, {row.points})" for row, _ in rough)
-        sentences.append(f"{name}: without the corners, in no more time than kurbel's, the least errors are {shown}.")
+        shown = "; ".join(
+            f"{row.quantity} {row.error:.0e} ({row.method}, {row.points})" for row, _ in rough
+        )
+        sentences.append(
+            f"{name}: without the corners, in no more time than kurbel's, the least errors are {shown}."
+        )
     return sentences
 
 
@@ -150,7 +161,11 @@ def _of_speed(name: str, rows: Sequence[stiff.SpeedTrial]) -> list[str]:
     ends = sum(row.omega is not None and row.state != "periodic" for row in others)
     begin = f"{name}: the error of ω is {own.omega:.0e} by kurbel"
     count = f"of {len(others)} runs by other methods {failed} fail and {ends} end without a periodic speed"
-    best = min((row for row in others if row.omega is not None), key=lambda row: row.omega or 0.0, default=None)
+    best = min(
+        (row for row in others if row.omega is not None),
+        key=lambda row: row.omega or 0.0,
+        default=None,
+    )
     if best is None:
         return [f"{begin}; {count}."]
     nearest = f"{best.omega:.0e} by {best.method} ({best.points}) in {best.ratio:.2g} of its time"
@@ -185,7 +200,9 @@ def environment() -> str:
     processor, cpuinfo = platform.processor() or "unknown processor", Path("/proc/cpuinfo")
     if cpuinfo.exists():
         lines = cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines()
-        processor = next((line.partition(":")[2] for line in lines if line.startswith("model name")), processor)
+        processor = next(
+            (line.partition(":")[2] for line in lines if line.startswith("model name")), processor
+        )
     versions = [f"Python {platform.python_version()}"]
     for package in ("kurbel", "numpy", "mpmath"):
         with suppress(PackageNotFoundError):  # such as kurbel where it is run from its source
@@ -196,16 +213,22 @@ def environment() -> str:
 # stiff and extreme cases
 
 
-def extremes_report(loads: Loads, compute: Callable[[Machine, str], float | None]) -> tuple[Report, bool]:
+def extremes_report(
+    loads: Loads, compute: Callable[[Machine, str], float | None]
+) -> tuple[Report, bool]:
     """Return the verdicts on all cases, the worst first, and whether every one is passed.
 
     compute: see `kurbel.accuracy.extremes.verdicts`.
     """
-    judged = sorted(verdicts(all_cases(), compute, loads), key=lambda verdict: verdict.badness, reverse=True)
+    judged = sorted(
+        verdicts(all_cases(), compute, loads), key=lambda verdict: verdict.badness, reverse=True
+    )
     passed = sum(verdict.passed for verdict in judged)
     listed = _table("extremes", f"{passed} of {len(judged)} cases passed", judged, 5)
     part = Part("stiff and extreme cases", (), place_tables=(listed,))
-    report = Report("Stiff and extreme cases", "accuracy", None, "scenes", (part,), head=(environment(),))
+    report = Report(
+        "Stiff and extreme cases", "accuracy", None, "scenes", (part,), head=(environment(),)
+    )
     return report, passed == len(judged)
 
 
@@ -219,9 +242,9 @@ def answer(machine: Machine, asked: str) -> float | None:
     report = report_of(Case(machine), Frame(command, (float(at or 0),), None, "si"))
     for part in report.all_parts:
         values = {column.id: column.values[0] for column in part.columns} if at else {}
-        for one in part.key_values:
-            if not isinstance(one.value, tuple):
-                values.setdefault(one.id, one.value)
+        for key_value in part.key_values:
+            if not isinstance(key_value.value, tuple):
+                values.setdefault(key_value.id, key_value.value)
         if (value := values.get(name)) is not None:
             return value
     return None

@@ -17,21 +17,43 @@ from kurbel.notes.warnings import (
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.balance import MachineBalance
-from kurbel.tables.frame import Functions, Places, Row, Subject
+from kurbel.tables.frame import Functions, PlaceRow, Places, Subject
 
 ORDERS = by_id(
     Quantity("order", "n", "ratio", "Order: turns of the components in one turn of the crank"),
     Quantity("F_forward", "F_+", "force", "Unbalanced force: component rotating with the crank"),
-    Quantity("F_backward", "F_−", "force", "Unbalanced force: component rotating against the crank"),
-    Quantity("F_forward_book", "F_+,0", "force", "The same by the acceleration of first order (R 291)"),
-    Quantity("F_backward_book", "F_−,0", "force", "The same by the acceleration of first order (R 291)"),
-    Quantity("F_share", "F_n²/F²", "ratio", "Share of the order in the mean square of the unbalanced force", "F_n2/F2"),
-    Quantity("M_forward", "M_+", "torque", "Unbalanced moment: component rotating with the crank"),
-    Quantity("M_backward", "M_−", "torque", "Unbalanced moment: component rotating against the crank"),
-    Quantity("M_forward_book", "M_+,0", "torque", "The same by the acceleration of first order (R 291)"),
-    Quantity("M_backward_book", "M_−,0", "torque", "The same by the acceleration of first order (R 291)"),
     Quantity(
-        "M_share", "M_n²/M²", "ratio", "Share of the order in the mean square of the unbalanced moment", "M_n2/M2"
+        "F_backward", "F_−", "force", "Unbalanced force: component rotating against the crank"
+    ),
+    Quantity(
+        "F_forward_book", "F_+,0", "force", "The same by the acceleration of first order (R 291)"
+    ),
+    Quantity(
+        "F_backward_book", "F_−,0", "force", "The same by the acceleration of first order (R 291)"
+    ),
+    Quantity(
+        "F_share",
+        "F_n²/F²",
+        "ratio",
+        "Share of the order in the mean square of the unbalanced force",
+        "F_n2/F2",
+    ),
+    Quantity("M_forward", "M_+", "torque", "Unbalanced moment: component rotating with the crank"),
+    Quantity(
+        "M_backward", "M_−", "torque", "Unbalanced moment: component rotating against the crank"
+    ),
+    Quantity(
+        "M_forward_book", "M_+,0", "torque", "The same by the acceleration of first order (R 291)"
+    ),
+    Quantity(
+        "M_backward_book", "M_−,0", "torque", "The same by the acceleration of first order (R 291)"
+    ),
+    Quantity(
+        "M_share",
+        "M_n²/M²",
+        "ratio",
+        "Share of the order in the mean square of the unbalanced moment",
+        "M_n2/M2",
     ),
 )
 """Columns of the table of orders; amplitudes."""
@@ -39,20 +61,41 @@ ORDERS = by_id(
 
 def _ellipse(name: str, kind: str, of: str) -> tuple[Quantity, ...]:
     return (
-        Quantity(f"{name}_long", f"{name}_a", kind, f"{of}: longer half-axis of the ellipse of this order"),
-        Quantity(f"{name}_short", f"{name}_b", kind, f"{of}: shorter half-axis"),
-        Quantity(f"{name}_direction", f"∠{name}_a", "angle", "Direction of the major axis", f"arg {name}_a"),
         Quantity(
-            f"{name}_forward_phase", f"∠{name}_+", "angle", "Phase of the forward component at φ = 0", f"arg {name}_+"
+            f"{name}_long",
+            f"{name}_a",
+            kind,
+            f"{of}: longer half-axis of the ellipse of this order",
+        ),
+        Quantity(f"{name}_short", f"{name}_b", kind, f"{of}: shorter half-axis"),
+        Quantity(
+            f"{name}_direction",
+            f"∠{name}_a",
+            "angle",
+            "Direction of the major axis",
+            f"arg {name}_a",
         ),
         Quantity(
-            f"{name}_backward_phase", f"∠{name}_−", "angle", "Phase of the backward component at φ = 0", f"arg {name}_-"
+            f"{name}_forward_phase",
+            f"∠{name}_+",
+            "angle",
+            "Phase of the forward component at φ = 0",
+            f"arg {name}_+",
+        ),
+        Quantity(
+            f"{name}_backward_phase",
+            f"∠{name}_−",
+            "angle",
+            "Phase of the backward component at φ = 0",
+            f"arg {name}_-",
         ),
     )
 
 
 ELLIPSES = by_id(
-    ORDERS["order"], *_ellipse("F", "force", "Unbalanced force"), *_ellipse("M", "torque", "Unbalanced moment")
+    ORDERS["order"],
+    *_ellipse("F", "force", "Unbalanced force"),
+    *_ellipse("M", "torque", "Unbalanced moment"),
 )
 """Columns of the table of ellipses: what the two circles of an order make together."""
 
@@ -61,7 +104,12 @@ WEIGHTS = by_id(
     Quantity("product", "u", "unbalance", "Mass times radius"),
     Quantity("angle", "α", "angle", "Direction at φ = 0 from the stroke line of cylinder 1"),
     Quantity("hammer_blow", "H", "force", "Amplitude by which it loads and lifts its wheel"),
-    Quantity("counterweight", "u_R", "unbalance", "The whole counterweight in the wheel, mass times radius"),
+    Quantity(
+        "counterweight",
+        "u_R",
+        "unbalance",
+        "The whole counterweight in the wheel, mass times radius",
+    ),
     Quantity("counterweight_angle", "α_R", "angle", "Its direction at φ = 0"),
 )
 """Columns of the tables of weights."""
@@ -120,7 +168,7 @@ def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
     if balance.omega is None:
         return
     square, free, book = balance.omega**2, balance.free, balance.book if compare else None
-    rows: list[Row] = []
+    rows: list[PlaceRow] = []
     for order in free.orders:
         values: dict[str, float | None] = {"order": order}
         for name, vector, of_book in (
@@ -141,7 +189,10 @@ def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
             middle = math.degrees(cmath.phase(f * g)) / 2
             middle = middle + 180.0 if middle < -_NOTHING else max(middle, 0.0)
             values[f"{name}_direction"] = middle if f and g else None
-            values |= {f"{name}_forward_phase": _direction(f), f"{name}_backward_phase": _direction(g)}
+            values |= {
+                f"{name}_forward_phase": _direction(f),
+                f"{name}_backward_phase": _direction(g),
+            }
         rows.append(((), values))
     title = "Orders: circles with the crank (+) and against it (−)"
     yield Places("orders", title, (), ORDERS, rows, alone=_DIGITS)
@@ -152,14 +203,19 @@ def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
 def _weights(balance: MachineBalance) -> Iterator[Places]:
     """Yield the best weights, and what the wheels of a locomotive carry besides the rotating masses."""
 
-    def row(name: str, place: float | None, product: complex) -> tuple[tuple[str], dict[str, float | None]]:
+    def row(
+        name: str, place: float | None, product: complex
+    ) -> tuple[tuple[str], dict[str, float | None]]:
         at: dict[str, float | None] = {} if place is None else {"axial_position": place}
         return (name,), {**at, "product": abs(product), "angle": _direction(product)}
 
     best = zip("AB", balance.best_in_planes)
     rows = [row(f"counterweight {end}", one.place, one.product) for end, one in best if one.product]
     for order, weights in groupby(balance.best_shafts, lambda one: one.order):
-        name, given = f"shaft n = {abs(order)}, {'with' if order > 0 else 'against'} the crank", [*weights]
+        name, given = (
+            f"shaft n = {abs(order)}, {'with' if order > 0 else 'against'} the crank",
+            [*weights],
+        )
         for end, one in zip("AB", given):
             rows.append(row(f"{name}: {end}" if len(given) > 1 else name, one.place, one.product))
     if rows:
@@ -171,7 +227,11 @@ def _weights(balance: MachineBalance) -> Iterator[Places]:
         for name, place, product, weight in wheels:
             head, values = row(name, place, product)
             values |= {"hammer_blow": abs(product) * square} if square else {}
-            values |= {"counterweight": abs(weight), "counterweight_angle": _direction(weight)} if weight else {}
+            values |= (
+                {"counterweight": abs(weight), "counterweight_angle": _direction(weight)}
+                if weight
+                else {}
+            )
             rows.append((head, values))
         title = "In the wheels: what they carry beyond the rotating masses, and the whole counterweights"
         yield Places("wheels", title, ("wheel",), WEIGHTS, rows)

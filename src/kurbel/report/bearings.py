@@ -17,16 +17,19 @@ def _loaded(case: Case) -> list[Subject]:
         forces.refuse_locking()
     parts = [
         Subject(
-            one.name,
-            one,
-            one.at,
-            left_out=bearing_left_out(*one.size, one.omega),
-            of=one.cylinders[0].drive.name if one.of_rod else "",
+            part.name,
+            part,
+            part.at,
+            left_out=bearing_left_out(*part.size, part.omega),
+            of=part.cylinders[0].drive.name if part.of_rod else "",
         )
-        for one in case.bearings.parts
+        for part in case.bearings.parts
     ]
     warnings = chain(of_machine(case), as_far_as_solved(bearing_warnings(case), "bearings"))
-    return [*parts, Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True)]
+    return [
+        *parts,
+        Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True),
+    ]
 
 
 def _bearing_notes(case: Case) -> Iterator[str]:
@@ -47,7 +50,7 @@ def _bearing_notes(case: Case) -> Iterator[str]:
         )
     if line and any(len(throw.cylinders) > 1 for throw in line.throws):
         yield rods_on_pin(line.shaft)
-    if any(one.masses and one.masses.undivided for one in machine.cylinders):
+    if any(cylinder.masses and cylinder.masses.undivided for cylinder in machine.cylinders):
         yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
 
 

@@ -259,15 +259,21 @@ _ROWS = (
     Command("report", "Everything on one page of HTML; two machines side by side."),
     Command("sweep", "Key values of many designs of a machine."),
     Command("find", "The value of a key that gives a wanted key value.", statuses=_STALLS),
-    Command("accuracy", "Error against run time; stiff and extreme cases.", statuses=(BROKEN, NO_SOLUTION)),
+    Command(
+        "accuracy",
+        "Error against run time; stiff and extreme cases.",
+        statuses=(BROKEN, NO_SOLUTION),
+    ),
     Command("friction", "Body on an inclined plane; needs no machine file."),
-    Command("check", "Read and check a machine file and its limits.", statuses=(BROKEN, NO_SOLUTION)),
+    Command(
+        "check", "Read and check a machine file and its limits.", statuses=(BROKEN, NO_SOLUTION)
+    ),
     Command("example", "List the shipped machines, or print one."),
     Command("keys", "The keys of the machine file, or one of them in full."),
     Command("units", "The units of every kind of quantity."),
     Command("schema", "JSON Schema of the machine file, or of the JSON output."),
 )
-COMMANDS = {one.word: one for one in _ROWS}
+COMMANDS = {row.word: row for row in _ROWS}
 """By its word, in the order in which `kurbel --help` lists them."""
-REPORTS = sorted((one for one in _ROWS if one.of), key=lambda one: one.section)
+REPORTS = sorted((row for row in _ROWS if row.of), key=lambda one: one.section)
 """Those that report on a machine, in the order of the whole report."""

@@ -9,7 +9,7 @@ from kurbel.notes.warnings import of_machine
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.delivery import CompressorStage, MachineDelivery
-from kurbel.tables.frame import Functions, Places, Row, Subject
+from kurbel.tables.frame import Functions, PlaceRow, Places, Subject
 from kurbel.tables.tables import LeftOut
 
 ENDS = by_id(
@@ -34,18 +34,22 @@ def _delivering(case: Case) -> list[Subject]:
         whole = Subject("whole machine", found.pump, found.pump.at)
     warnings = chain(of_machine(case), delivery_warnings(found))
     return [
-        *(Subject(one.name, one, tables=_ends_tables(one)) for one in found.stages),
-        *(Subject(one.name, one, one.at) for one in found.pistons),
+        *(Subject(stage.name, stage, tables=_ends_tables(stage)) for stage in found.stages),
+        *(Subject(piston.name, piston, piston.at) for piston in found.pistons),
         whole._replace(left_out=delivery_left_out(found), warnings=warnings, whole=True),
     ]
 
 
 def _ends_tables(stage: CompressorStage) -> Iterator[Places]:
-    rows: list[Row] = [((one.owner, one.end), one.figures) for one in stage.ends]
+    rows: list[PlaceRow] = [((end.owner, end.end), end.figures) for end in stage.ends]
     pressures = ""
     if stage.suction is not None:
-        pressures = f", {show(stage.suction, 'pressure')} to {show(stage.delivery, 'pressure')} absolute"
-    yield Places("ends", f"Ends of {stage.name}{pressures}", ("cylinder", "end"), ENDS, rows, headed=True)
+        pressures = (
+            f", {show(stage.suction, 'pressure')} to {show(stage.delivery, 'pressure')} absolute"
+        )
+    yield Places(
+        "ends", f"Ends of {stage.name}{pressures}", ("cylinder", "end"), ENDS, rows, headed=True
+    )
 
 
 def _delivery_notes(case: Case) -> Iterator[str]:
@@ -63,19 +67,27 @@ DELIVERY = Functions("Delivery", _delivering, _delivery_notes)
 
 def delivery_left_out(found: MachineDelivery) -> Iterator[LeftOut]:
     """Yield what flows, capacities and powers of pumps and compressors leave out."""
-    machine, drawn = found.machine, any(one.suction is None for one in found.stages)
-    gases = [piston.gas or machine.gas for cylinder in machine.cylinders for piston in cylinder.pistons]
+    machine, drawn = found.machine, any(stage.suction is None for stage in found.stages)
+    gases = [
+        piston.gas or machine.gas for cylinder in machine.cylinders for piston in cylinder.pistons
+    ]
     constants = [one for one in (*gases, machine.gas) if one]
     no_speed = "no speed given" if machine.speed is None else ""
     no_gas = "" if constants else "no gas given"
-    no_mass = "" if any(one.gas_constant for one in constants) else "no molar_mass given"
-    no_exponent = "" if any(one.isentropic_exponent for one in constants) else "no isentropic_exponent given"
+    no_mass = "" if any(constant.gas_constant for constant in constants) else "no molar_mass given"
+    no_exponent = (
+        ""
+        if any(constant.isentropic_exponent for constant in constants)
+        else "no isentropic_exponent given"
+    )
     if found.pump:
         pipes = machine.pump and (machine.pump.suction_pipe or machine.pump.delivery_pipe)
         no_pipes = "" if pipes else "no pipes given under pump"
         yield from missing({"flow": no_speed, "pipes, vessels, suction lift": no_pipes})
     if drawn:
-        yield LeftOut("capacity and the rest", "a drawn card or a trace does not say when valves open")
+        yield LeftOut(
+            "capacity and the rest", "a drawn card or a trace does not say when valves open"
+        )
     elif found.stages:
         yield from missing(
             {
@@ -89,7 +101,7 @@ def delivery_left_out(found: MachineDelivery) -> Iterator[LeftOut]:
 
 def delivery_warnings(found: MachineDelivery) -> Iterator[str]:
     """Yield stages in series whose mass flows differ, vessels that are small, and a lift that is too high."""
-    known = [one for one in found.stages if one.suction is not None]
+    known = [stage for stage in found.stages if stage.suction is not None]
     for one, after in pairwise(known):
         flow, next_flow = one.answers.get("mass_flow"), after.answers.get("mass_flow")
         low, high = _IN_SERIES

@@ -20,7 +20,13 @@ def _turned(case: Case) -> list[Subject]:
         warnings=of_machine(case),
         whole=True,
     )
-    return [*(Subject(one.drive.name, DeadCentre(one, effort.cycle)) for one in case.cylinders), whole]
+    return [
+        *(
+            Subject(cylinder.drive.name, DeadCentre(cylinder, effort.cycle))
+            for cylinder in case.cylinders
+        ),
+        whole,
+    ]
 
 
 def _flywheel_notes(case: Case) -> Iterator[str]:
@@ -31,14 +37,23 @@ def _flywheel_notes(case: Case) -> Iterator[str]:
         yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
     if effort.swing is not None:
         yield "Of the effort its swing of energy alone is known: ω_m is the mean of ω_max and ω_min, δ = ΔE/(J ω_m²)."
-    elif turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
+    elif (
+        turning.J is not None
+        and turning.omega
+        and not turning.elastic
+        and turning.multiplier is None
+    ):
         yield "The load does not determine the speed: the mean of ω over time is taken as the nominal speed."
     if efficiency != 1 and any(effort.lost(group) for group in effort.groups):
         yield (
             "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
             "driven pistons, inertia, weight and friction count in full (R p. 613)."
         )
-    if efficiency != 1 and any(term.factor != 1 for term in effort.inertia_terms) and turning.speed is not None:
+    if (
+        efficiency != 1
+        and any(term.factor != 1 for term in effort.inertia_terms)
+        and turning.speed is not None
+    ):
         yield "As in the book the efficiency applies to all of T; in ω the moving masses count in full."
     if turning.rigid:
         yield (

@@ -16,25 +16,27 @@ from kurbel.notes.warnings import (
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.indicated import OF_CYCLES
-from kurbel.tables.frame import Frame, Functions, Places, Row, Subject
+from kurbel.tables.frame import Frame, Functions, PlaceRow, Places, Subject
 from kurbel.traces.pressure import TracePressure
 
 
 def mechanism_notes(case: Case) -> Iterable[str]:
     """Return what a reader should know about the mechanisms, each sentence once."""
-    return dict.fromkeys(note for cylinder in case.machine.cylinders for note in cylinder.mechanism.notes)
+    return dict.fromkeys(
+        note for cylinder in case.machine.cylinders for note in cylinder.mechanism.notes
+    )
 
 
 def _with_motion(case: Case) -> list[Subject]:
     return [
         Subject(
-            one.drive.name,
-            one,
-            one.at,
-            left_out=motion_left_out(case.machine, one.drive.cylinder),
-            warnings=valve_warnings(one),
+            cylinder.drive.name,
+            cylinder,
+            cylinder.at,
+            left_out=motion_left_out(case.machine, cylinder.drive.cylinder),
+            warnings=valve_warnings(cylinder),
         )
-        for one in case.cylinders
+        for cylinder in case.cylinders
     ]
 
 
@@ -44,14 +46,14 @@ MOTION = Functions("Motion of the crank train", _with_motion, mechanism_notes, l
 def _with_forces(case: Case) -> list[Subject]:
     return [
         Subject(
-            one.drive.name,
-            one,
-            one.at,
-            left_out=forces_left_out(case.machine, one),
-            tables=_piston_table(one),
-            pistons=[Subject(piston.name, piston) for piston in one.pistons],
+            cylinder.drive.name,
+            cylinder,
+            cylinder.at,
+            left_out=forces_left_out(case.machine, cylinder),
+            tables=_piston_table(cylinder),
+            pistons=[Subject(piston.name, piston) for piston in cylinder.pistons],
         )
-        for one in case.cylinders
+        for cylinder in case.cylinders
     ]
 
 
@@ -60,13 +62,20 @@ def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
-    cylinders, warnings = _with_forces(case), by_cylinder(case) if frame.prose and case.cylinders else {}
-    cylinders = [one._replace(warnings=warnings.get(one.name, ())) for one in cylinders]
+    cylinders, warnings = (
+        _with_forces(case),
+        by_cylinder(case) if frame.prose and case.cylinders else {},
+    )
+    cylinders = [
+        cylinder._replace(warnings=warnings.get(cylinder.name, ())) for cylinder in cylinders
+    ]
     if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()
         return cylinders, _forces_notes(case)
-    if cylinders and not any(forces.indicated and forces.indicated.cycles for forces in case.cylinders):
+    if cylinders and not any(
+        forces.indicated and forces.indicated.cycles for forces in case.cylinders
+    ):
         raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
     each = zip(cylinders, case.cylinders)
     return [one._replace(tables=_cycle_table(forces)) for one, forces in each], ()
@@ -77,8 +86,10 @@ def _piston_table(forces: CylinderForces) -> Iterator[Places]:
     if not forces.pistons:
         return
     declared, scope = forces.pistons[0].lists.key_values("forces"), f"{forces.drive.name}."
-    each = ((one.name.removeprefix(scope), one.key_values()) for one in forces.pistons)
-    rows: list[Row] = [((name,), {id: figure.value for id, figure in found.items()}) for name, found in each]
+    each = ((piston.name.removeprefix(scope), piston.key_values()) for piston in forces.pistons)
+    rows: list[PlaceRow] = [
+        ((name,), {id: figure.value for id, figure in found.items()}) for name, found in each
+    ]
     yield Places("pistons", "Each piston", ("piston",), declared, rows, headed=True)
 
 
@@ -86,9 +97,13 @@ def _cycle_table(forces: CylinderForces) -> Iterator[Places]:
     cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
     if not cycles:
         return
-    declared = {one.id: one.absolute() if gas and gas.absolute else one for one in OF_CYCLES}
-    columns = zip(*(one.tolist() for one in cycles))
-    rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
+    declared = {
+        cycle.id: cycle.absolute() if gas and gas.absolute else cycle for cycle in OF_CYCLES
+    }
+    columns = zip(*(cycle.tolist() for cycle in cycles))
+    rows: list[PlaceRow] = [
+        ((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)
+    ]
     yield Places("cycles", "Measured cycles", ("cycle",), declared, rows, headed=True)
 
 
@@ -113,7 +128,12 @@ def _forces_notes(case: Case) -> Iterator[str]:
             "'reciprocating' is one sum, with the connecting rod's share: P_G counts all of it; give the parts to leave"
             " that share out."
         )
-    ends = [end for forces in case.cylinders for gas in forces.drive.gas for end in (gas.head, gas.crank)]
+    ends = [
+        end
+        for forces in case.cylinders
+        for gas in forces.drive.gas
+        for end in (gas.head, gas.crank)
+    ]
     if any(isinstance(end, TracePressure) and end.trace.even for end in ends):
         yield (
             "ΔA/A of a trace is not a rounding error: the indicated work is by the trapezoid rule on the samples, "

@@ -5,12 +5,16 @@ import math
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.friction import holding_force
-from kurbel.tables.frame import Places, Row, shown_key_values
+from kurbel.tables.frame import PlaceRow, Places, shown_key_values
 from kurbel.tables.tables import LeftOut, Part, Report
 
 _UP = Quantity("P_up", "P/Q", "ratio", "Force over the weight that moves the body up")
-_HELD = Quantity("P_held", "P_1/Q", "ratio", "Force over the weight that keeps the body from sliding down")
-_RHO = Quantity("rho", "ρ", "angle", "Angle of friction: at a smaller incline the body rests by itself", "rho")
+_HELD = Quantity(
+    "P_held", "P_1/Q", "ratio", "Force over the weight that keeps the body from sliding down"
+)
+_RHO = Quantity(
+    "rho", "ρ", "angle", "Angle of friction: at a smaller incline the body rests by itself", "rho"
+)
 
 
 def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -> Report:
@@ -20,9 +24,12 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
     angles and coefficients that make no inclined plane, and for a force that lifts the body off it.
     """
     _check(incline, coefficient, direction)
-    requested = {f"{direction:g}_deg_above_plane" if direction else "along_plane": direction, "horizontal": -incline}
+    requested = {
+        f"{direction:g}_deg_above_plane" if direction else "along_plane": direction,
+        "horizontal": -incline,
+    }
     left: list[LeftOut] = []
-    rows: list[Row] = []
+    rows: list[PlaceRow] = []
     for name, angle in requested.items():
         forces: dict[str, float | None] = {}
         for quantity, friction in ((_UP, coefficient), (_HELD, -coefficient)):
@@ -32,21 +39,29 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
                 what = f"{quantity.symbol} {name.replace('_', ' ')}"
                 left.append(LeftOut(what, "no force does it, however large: the body locks itself"))
         rows.append(((name,), forces))
-    table = Places("plane", "Force P over the weight Q", ("direction",), by_id(_UP, _HELD), rows).shown("si")
+    table = Places(
+        "plane", "Force P over the weight Q", ("direction",), by_id(_UP, _HELD), rows
+    ).shown("si")
     (rho,) = shown_key_values([(_RHO, math.degrees(math.atan(coefficient)))], "si")
     whole = Part("inclined plane", (), (rho,), tuple(left), place_tables=(table,))
     head = (
         f"Incline {incline:g} deg, coefficient {coefficient:g} (Redtenbacher 1862)",
         "P moves the body up, P_1 keeps it from sliding down; a negative P_1 must push: friction alone holds the body.",
     )
-    return Report("Friction on an inclined plane", "friction", None, "cylinders", (), whole, head=head)
+    return Report(
+        "Friction on an inclined plane", "friction", None, "cylinders", (), whole, head=head
+    )
 
 
 def _check(incline: float, coefficient: float, direction: float) -> None:
     if not 0 <= incline < 90:
         raise UsageError(f"--incline {incline:g}: a plane is inclined by 0 to less than 90 degrees")
     if not coefficient >= 0:
-        raise UsageError(f"--coefficient {coefficient:g}: a coefficient of friction is not negative")
+        raise UsageError(
+            f"--coefficient {coefficient:g}: a coefficient of friction is not negative"
+        )
     if not -90 < direction < 90 - incline:
         room = f"more than -90 and less than {90 - incline:g} degrees above the plane"
-        raise UsageError(f"--direction {direction:g}: must be {room}; steeper the force lifts the body off")
+        raise UsageError(
+            f"--direction {direction:g}: must be {room}; steeper the force lifts the body off"
+        )

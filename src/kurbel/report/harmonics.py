@@ -16,7 +16,7 @@ from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.harmonics import CylinderOrders, MachineOrders, Orders
-from kurbel.tables.frame import Frame, Functions, Places, Row, Subject
+from kurbel.tables.frame import Frame, Functions, PlaceRow, Places, Subject
 
 TORQUE_ORDERS = by_id(
     Quantity("speed", "n", "speed", "Speed of rotation"),
@@ -26,7 +26,12 @@ TORQUE_ORDERS = by_id(
     Quantity("M_amplitude", "|M_ν|", "torque", "Amplitude of the order"),
     Quantity("M_phase", "ε_ν", "angle", "Phase: the order is |M_ν| cos(νφ − ε_ν)"),
     Quantity("M_gas", "|M_g|", "torque", "Amplitude of the part independent of speed"),
-    Quantity("M_inertia", "|M_b|", "torque", "Amplitude of the part from inertia forces, proportional to ω²"),
+    Quantity(
+        "M_inertia",
+        "|M_b|",
+        "torque",
+        "Amplitude of the part from inertia forces, proportional to ω²",
+    ),
     Quantity("t_order", "t_ν", "pressure", "Tangential-pressure coefficient |M_ν|/(R A)"),
 )
 """Of one order of a torque, by id."""
@@ -36,7 +41,10 @@ _HIGHEST_ORDER = 1000
 
 
 def _harmonics(
-    case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
+    case: Case,
+    frame: Frame,
+    orders: Sequence[float] | None = None,
+    speeds: Sequence[float] | None = None,
 ) -> tuple[list[Subject], Iterator[str]]:
     """Return the orders of the turning effort; orders: those to show, None for all up to 24.
 
@@ -45,14 +53,16 @@ def _harmonics(
     """
     machine, found = case.machine, case.harmonics(requested_orders(case.machine, orders))
     if speeds is not None and not machine.speed:
-        raise UsageError("--speeds: the inertia forces are scaled from those at the 'speed' of the machine; give one")
+        raise UsageError(
+            "--speeds: the inertia forces are scaled from those at the 'speed' of the machine; give one"
+        )
     cylinders = [
         Subject(
-            one.forces.drive.name,
-            left_out=left_out(machine, one.forces.drive.cylinder),
-            tables=_orders_of_cylinder(one),
+            cylinder.forces.drive.name,
+            left_out=left_out(machine, cylinder.forces.drive.cylinder),
+            tables=_orders_of_cylinder(cylinder),
         )
-        for one in found.cylinders
+        for cylinder in found.cylinders
     ]
     no_masses = "no masses, or no speed given" if cylinders else "the effort is given as a torque"
     apart = missing({"gas and inertia apart": no_masses if found.machine.inertia is None else ""})
@@ -81,17 +91,23 @@ def requested_orders(machine: Machine, requested: Sequence[float] | None) -> Arr
             most = f"at most {_HIGHEST_ORDER} periods per turn"
             raise UsageError(f"--orders {order:g}: an order is more than 0 and {most}")
         if not is_whole(order * turns):
-            known = {1: "1, 2, 3, …", 2: "½, 1, 1½, …"}.get(turns, f"1/{turns}, 2/{turns}, 3/{turns}, …")
+            known = {1: "1, 2, 3, …", 2: "½, 1, 1½, …"}.get(
+                turns, f"1/{turns}, 2/{turns}, 3/{turns}, …"
+            )
             cycle = f"the cycle repeats after {360 * turns} degrees"
             raise UsageError(f"--orders {order:g}: {cycle} and has the orders {known}")
     return None if requested is None else np.unique(requested)
 
 
 def _harmonics_notes(found: MachineOrders) -> Iterator[str]:
-    torques = {f"The torque of {one.forces.drive.name}": one.own for one in found.cylinders}
+    torques = {
+        f"The torque of {cylinder.forces.drive.name}": cylinder.own for cylinder in found.cylinders
+    }
     torques["The turning effort"] = found.machine
     yield from (
-        f"{what} has none of these orders: they are all zero." for what, one in torques.items() if _uniform(one)
+        f"{what} has none of these orders: they are all zero."
+        for what, one in torques.items()
+        if _uniform(one)
     )
     if not all(map(_uniform, torques.values())):
         yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
@@ -113,7 +129,9 @@ def _orders_of_cylinder(cylinder: CylinderOrders) -> Iterator[Places]:
     yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=_uniform(torque))
 
 
-def _orders_of_machine(found: MachineOrders, speeds: Sequence[float], working: float | None) -> Iterator[Places]:
+def _orders_of_machine(
+    found: MachineOrders, speeds: Sequence[float], working: float | None
+) -> Iterator[Places]:
     """Yield the orders of the turning effort at the working speed, and those at others, in revolutions per second."""
     torque, uniform = found.machine, _uniform(found.machine)
     title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
@@ -128,9 +146,11 @@ def _orders_of_machine(found: MachineOrders, speeds: Sequence[float], working: f
         yield Places("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
 
 
-def _order_rows(torque: Orders, area: float | None = None, major: Sequence[float] = ()) -> list[Row]:
+def _order_rows(
+    torque: Orders, area: float | None = None, major: Sequence[float] = ()
+) -> list[PlaceRow]:
     """Return the orders of a torque; area: R A of its cylinder in m³, if it has a piston; major: those to mark."""
-    rows = list[Row]()
+    rows = list[PlaceRow]()
     for index, order in enumerate(torque.orders.tolist()):
         values = _of_order(order, complex(torque.whole[index]))
         if torque.inertia is not None:

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from kurbel.declared.forms.structures import Inline, Keyed, Listing, RecordForm, records
 from kurbel.declared.forms.values import Form
-from kurbel.declared.keys import Key, without
-from kurbel.declared.reading import shown
+from kurbel.declared.keys import Key, absent_text
+from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import near
@@ -24,14 +24,20 @@ class ListedKey(NamedTuple):
     @property
     def line(self) -> str:
         """What is written, what it means, and what holds without it."""
-        return f"{self._form}: {self.key.description}" + (f"; {self.absent}" if self.key.required else "")
+        return f"{self._form}: {self.key.description}" + (
+            f"; {self.absent}" if self.key.required else ""
+        )
 
     @property
     def full(self) -> list[tuple[str, str]]:
         """All about the key, each after its head."""
         key = self.key
         item = key.form.item if isinstance(key.form, Listing) else None
-        inner = _of_record(item, self.path) if isinstance(item, RecordForm) else _below(key.form, self.path)
+        inner = (
+            _of_record(item, self.path)
+            if isinstance(item, RecordForm)
+            else _below(key.form, self.path)
+        )
         name = self.path.rpartition(".")[2]
         below = dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in inner)
         found = {
@@ -76,16 +82,24 @@ def described(path: str) -> list[tuple[str, str]]:
     for name in (".".join(steps), ".".join(inner)):
         if found := places.get(name):
             return [line for one in found for line in one.full]
-        if below := [(each, ones[0].line) for each, ones in places.items() if each.startswith(f"{name}.")]:
+        if below := [
+            (each, ones[0].line) for each, ones in places.items() if each.startswith(f"{name}.")
+        ]:
             return below
-    above = dict.fromkeys(name[:end] for name in places for end, sign in enumerate(f"{name}.") if sign == ".")
+    above = dict.fromkeys(
+        name[:end] for name in places for end, sign in enumerate(f"{name}.") if sign == "."
+    )
     last = {name: name.rpartition(".")[2] for name in above}
     meant = steps[-1] if steps[-1] in last.values() else near(steps[-1], tuple(last.values()))
     there = [name for name in above if last[name] == meant]
     hint = (
-        f"; it is at {', '.join(there)}" if meant == steps[-1] else f"; did you mean {' or '.join(map(repr, there))}?"
+        f"; it is at {', '.join(there)}"
+        if meant == steps[-1]
+        else f"; did you mean {' or '.join(map(repr, there))}?"
     )
-    raise UsageError(f"no key '{shown(path)}'{hint if there else ''} ('kurbel keys' lists them)")
+    raise UsageError(
+        f"no key '{text_in_one_line(path)}'{hint if there else ''} ('kurbel keys' lists them)"
+    )
 
 
 def meaning(path: str, places: dict[str, list[ListedKey]]) -> str:
@@ -95,13 +109,17 @@ def meaning(path: str, places: dict[str, list[ListedKey]]) -> str:
     if above is None:
         return ""
     found = places[".".join(steps[above:])]
-    every = [one for one in found if not one.beside] or found  # of the machine, of a cylinder, of a piston
+    every = [
+        one for one in found if not one.beside
+    ] or found  # of the machine, of a cylinder, of a piston
     record = 2 if "tandem" in steps[:above] else min(above, 1)
     return every[min(record, len(every) - 1)].key.text.replace("`", "")
 
 
 def _steps(path: str) -> list[str]:
-    return [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
+    return [
+        step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()
+    ]
 
 
 def _of_record(record: RecordForm, path: str, beside: str = "") -> Iterator[ListedKey]:
@@ -109,7 +127,7 @@ def _of_record(record: RecordForm, path: str, beside: str = "") -> Iterator[List
         if not isinstance(key.form, Inline):
             here = f"{path}.{name}" if path else name
             others = tuple(other for other, one in record.keys.items() if one.instead == name)
-            yield ListedKey(here, key, without(record.keys, name), others, beside)
+            yield ListedKey(here, key, absent_text(record.keys, name), others, beside)
             yield from _below(key.form, here)
         for word, inner in records(key.form, name) if key.form.inline else ():
             yield from _of_record(inner, path, "" if isinstance(key.form, Inline) else word)
@@ -121,7 +139,9 @@ def _below(form: Form, path: str) -> Iterator[ListedKey]:
         yield from () if form.inline_too else _of_record(form, path)
         return
     if isinstance(form, Keyed):
-        yield from (ListedKey(f"{path}.{name}", key, key.absent) for name, key in form.single.items())
+        yield from (
+            ListedKey(f"{path}.{name}", key, key.absent) for name, key in form.single.items()
+        )
     if not form.inline:
         for name, inner in form.parts:
             yield from _below(inner, f"{path}.{name}" if name else path)

@@ -8,12 +8,19 @@ from kurbel.notes.warnings import of_machine, rods_on_pin, shells
 from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.stress import PARTS, CrankshaftStrength, ThrowStrength
-from kurbel.tables.frame import Functions, Places, Row, Subject
+from kurbel.tables.frame import Functions, PlaceRow, Places, Subject
 
 STRESSES = by_id(
-    Quantity("compression", "σ_c", "stress", "Compressive stress of a web by the force along it, negative in tension"),
+    Quantity(
+        "compression",
+        "σ_c",
+        "stress",
+        "Compressive stress of a web by the force along it, negative in tension",
+    ),
     Quantity("bending_in_plane", "σ_b1", "stress", "Bending in the plane of the throw"),
-    Quantity("bending_out_of_plane", "σ_b2", "stress", "Bending perpendicular to the plane of the throw"),
+    Quantity(
+        "bending_out_of_plane", "σ_b2", "stress", "Bending perpendicular to the plane of the throw"
+    ),
     Quantity("torsion", "τ", "stress", "Torsion"),
     Quantity("combined", "σ_res", "stress", "Combined stress 0.35 σ + 0.65 √(σ² + 4(α₀τ)²) (Bach)"),
     Quantity("von_mises", "σ_v", "stress", "Equivalent stress √(σ² + 3τ²) (von Mises)"),
@@ -22,7 +29,12 @@ STRESSES = by_id(
 
 THROWS = by_id(
     *(
-        Quantity(f"sigma_{part}_max", f"σ_{index}", "stress", f"Largest combined stress of {words} over the cycle")
+        Quantity(
+            f"sigma_{part}_max",
+            f"σ_{index}",
+            "stress",
+            f"Largest combined stress of {words} over the cycle",
+        )
         for part, (index, words) in PARTS.items()
     ),
     Quantity("safety_min", "S", "ratio", "Smallest safety of any part of the throw"),
@@ -48,7 +60,9 @@ def _stressed(case: Case) -> list[Subject]:
         "crankshaft",
         strength,
         at,
-        left_out=chain(left_out(case.machine, case.machine.cylinders[0]), strength_left_out(case.machine)),
+        left_out=chain(
+            left_out(case.machine, case.machine.cylinders[0]), strength_left_out(case.machine)
+        ),
         warnings=of_machine(case),
         tables=tables,
         whole=True,
@@ -61,11 +75,20 @@ def _stress_tables(throw: ThrowStrength, called: str = "") -> Iterator[Places]:
     for id, title, places in (
         ("dead_centre", "Dead centre, full piston force without inertia", throw.at_dead_centre),
         ("largest_torque", "Position of the largest torque", throw.at_largest_torque),
-        ("largest_stress", "Whole cycle: each place where its combined stress is largest", throw.at_worst),
+        (
+            "largest_stress",
+            "Whole cycle: each place where its combined stress is largest",
+            throw.at_worst,
+        ),
     ):
-        rows: list[Row] = []
+        rows: list[PlaceRow] = []
         for place in places:
-            stresses = (place.compression, place.bending_in_plane, place.bending_out_of_plane, place.torsion)
+            stresses = (
+                place.compression,
+                place.bending_in_plane,
+                place.bending_out_of_plane,
+                place.torsion,
+            )
             values = (place.degrees, *stresses, place.combined, place.von_mises)
             numbers = (None if stress is None else float(stress) for stress in values)
             rows.append(((place.part, place.name), dict(zip(("phi", *STRESSES), numbers))))
@@ -74,14 +97,16 @@ def _stress_tables(throw: ThrowStrength, called: str = "") -> Iterator[Places]:
 
 def _throw_table(strength: CrankshaftStrength) -> Iterator[Places]:
     """Yield the table of the throws along the shaft."""
-    rows: list[Row] = []
+    rows: list[PlaceRow] = []
     for throw in strength.throws:
         values: dict[str, float | None] = {}
         for part in PARTS:
             stress = throw.answers.get(f"sigma_{part}_max")
             values[f"sigma_{part}_max"] = None if stress is None else float(stress.value)
         safeties = [throw.answers.get(f"safety_{part}_min") for part in PARTS]
-        values["safety_min"] = min((float(safety.value) for safety in safeties if safety is not None), default=None)
+        values["safety_min"] = min(
+            (float(safety.value) for safety in safeties if safety is not None), default=None
+        )
         values["M_B_peak"] = abs(float(throw.peak_torque.value))
         cylinders = ", ".join(forces.drive.name for forces in throw.rods)
         rows.append(((throw.name, cylinders), values))

@@ -13,7 +13,7 @@ from kurbel.report.harmonics import TORQUE_ORDERS, requested_orders
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.chain import Holzer, holzer_at, tree_from_first
 from kurbel.solver.chapters.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
-from kurbel.tables.frame import Frame, Functions, Places, Row, Subject
+from kurbel.tables.frame import Frame, Functions, PlaceRow, Places, Subject
 from kurbel.tables.tables import LeftOut
 
 MODES = by_id(
@@ -25,10 +25,20 @@ MODES = by_id(
 
 PIECES = by_id(
     Quantity("M_shaft_mean", "M_w,m", "torque", "Mean torque in the shaft segment"),
-    Quantity("M_shaft_max", "M_w,max", "torque", "Largest torque in the shaft segment, all orders together"),
+    Quantity(
+        "M_shaft_max",
+        "M_w,max",
+        "torque",
+        "Largest torque in the shaft segment, all orders together",
+    ),
     Quantity("M_shaft_min", "M_w,min", "torque", "Smallest torque in the shaft segment"),
     Quantity("M_vibratory", "M_w,a", "torque", "Vibratory torque amplitude (half peak-to-peak)"),
-    Quantity("tau_mean", "τ_m", "stress", "Stress of the mean torque at the smallest section of the segment"),
+    Quantity(
+        "tau_mean",
+        "τ_m",
+        "stress",
+        "Stress of the mean torque at the smallest section of the segment",
+    ),
     Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress amplitude (half peak-to-peak)"),
 )
 """Of one piece of shaft at the working speed, by id."""
@@ -37,10 +47,22 @@ CRITICAL_SPEEDS = by_id(
     TORQUE_ORDERS["order"],
     MODES["mode"],
     Quantity("speed", "n_k", "speed", "Critical speed, at which the order excites the mode"),
-    Quantity("phase_sum", "|ΣΘ|", "ratio", "Phase vector sum of the cranks, with Θ of the Holzer table"),
+    Quantity(
+        "phase_sum", "|ΣΘ|", "ratio", "Phase vector sum of the cranks, with Θ of the Holzer table"
+    ),
     Quantity("distance", "Δn/n", "ratio", "Separation from the working speed, relative to it"),
-    Quantity("M_vibratory", "M_w,a", "torque", "Largest vibratory torque of any shaft segment when running there"),
-    Quantity("tau_vibratory", "τ_a", "stress", "Largest vibratory stress of any shaft segment when running there"),
+    Quantity(
+        "M_vibratory",
+        "M_w,a",
+        "torque",
+        "Largest vibratory torque of any shaft segment when running there",
+    ),
+    Quantity(
+        "tau_vibratory",
+        "τ_a",
+        "stress",
+        "Largest vibratory stress of any shaft segment when running there",
+    ),
 )
 """Of one critical speed, by id."""
 
@@ -48,10 +70,18 @@ HOLZER = by_id(
     Quantity("inertia", "J", "inertia", "Moment of inertia of the mass"),
     Quantity("theta", "Θ", "ratio", "Amplitude of the mass, relative to the first mass"),
     Quantity(
-        "inertia_torque", "ω²JΘ", "torque", "Inertia torque of the mass per radian of the first mass", "w2 J Theta"
+        "inertia_torque",
+        "ω²JΘ",
+        "torque",
+        "Inertia torque of the mass per radian of the first mass",
+        "w2 J Theta",
     ),
     Quantity(
-        "torque_sum", "Σω²JΘ", "torque", "Torque in the segment after the mass, per radian of the first mass", "sum"
+        "torque_sum",
+        "Σω²JΘ",
+        "torque",
+        "Torque in the segment after the mass, per radian of the first mass",
+        "sum",
     ),
     Quantity("stiffness", "k", "stiffness", "Stiffness of the segment after the mass"),
     Quantity("twist", "ΔΘ", "ratio", "Twist of the segment after the mass"),
@@ -94,7 +124,9 @@ def _torsion(
     UsageError without a shaft line, NoSolutionError if an undamped resonance has no limit.
     """
     if mode is not None and at is not None:
-        raise UsageError("--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out")
+        raise UsageError(
+            "--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out"
+        )
     found = case.torsion_of(requested_orders(case.machine, orders))
     critical = found.critical_speeds(modes, _HIGHEST_CRITICAL if orders is None else math.inf)
     _limited(found)
@@ -106,10 +138,10 @@ def _torsion(
     ]
     if found.segments:
         title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
-        of_pieces: list[Row] = [((piece.name,), _of_piece(piece)) for piece in found.segments]
+        of_pieces: list[PlaceRow] = [((piece.name,), _of_piece(piece)) for piece in found.segments]
         tables.append(Places("pieces", title, ("piece",), PIECES, of_pieces))
     if speeds is not None and not found.obstacle:
-        by_speed: list[Row] = [
+        by_speed: list[PlaceRow] = [
             ((found.segment_name(number),), {"speed": speed, **amplitudes})
             for number, piece in enumerate(zip(*_at_speeds(found, speeds)))
             for speed, amplitudes in zip(speeds, piece)
@@ -125,31 +157,41 @@ def _torsion(
         tables=tables,
         whole=True,
     )
-    pieces = [Subject(one.name, at=one.at) for one in found.segments] if frame.columns else []
+    pieces = (
+        [Subject(segment.name, at=segment.at) for segment in found.segments]
+        if frame.columns
+        else []
+    )
     with_torque = ["M_vibratory" in values for _, values in rows]
     notes = _torsion_notes(found, orders is None, any(with_torque) and not all(with_torque))
     return [*pieces, whole], notes
 
 
-TORSION = Functions("Torsional vibration", lambda case: [Subject("shaft line", _limited(case.torsion))], own=_torsion)
+TORSION = Functions(
+    "Torsional vibration",
+    lambda case: [Subject("shaft line", _limited(case.torsion))],
+    own=_torsion,
+)
 
 
-def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[Row]:
+def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[PlaceRow]:
     """Return critical speeds, with the largest amplitudes of all pieces where one is reached and damped."""
     reached = [one for one in critical if found.met(one)]
     of_reached = dict(zip(reached, _at_speeds(found, [one.speed for one in reached])))
-    rows: list[Row] = []
+    rows: list[PlaceRow] = []
     for one in critical:
         values = {id: float(value) for id, value in one._asdict().items() if value is not None}
         for amplitudes in of_reached.get(one, ()):
-            values |= {id: max(values.get(id, 0.0), amplitude) for id, amplitude in amplitudes.items()}
+            values |= {
+                id: max(values.get(id, 0.0), amplitude) for id, amplitude in amplitudes.items()
+            }
         rows.append((("near" if one.near else "",), values))
     return rows
 
 
 def _modes_table(vibration: ShaftVibration) -> Places:
     """Return the natural frequencies, with how many nodes each mode has, and where if they are few."""
-    rows: list[Row] = []
+    rows: list[PlaceRow] = []
     for index, omega in enumerate(vibration.modes.omegas.tolist()):
         mode = vibration.first + index
         values = {"mode": float(mode), "frequency": omega / (2 * math.pi), "omega_natural": omega}
@@ -213,7 +255,9 @@ def _holzer_table(vibration: ShaftVibration, mode: int, at: float | None) -> Pla
     return Places("holzer", f"Holzer's table {of}, ω² = {omega**2:.6g} 1/s²", labels, HOLZER, rows)
 
 
-def _holzer_segment(vibration: ShaftVibration, table: Holzer, segment: int, onward: bool) -> dict[str, float]:
+def _holzer_segment(
+    vibration: ShaftVibration, table: Holzer, segment: int, onward: bool
+) -> dict[str, float]:
     """Return the values of a segment in Holzer's table; onward: whether the mass of the row is before it."""
     chain = vibration.chain
     torque = float(table.torques[segment] if onward else -table.torques_behind[segment])
@@ -233,7 +277,10 @@ def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[
     factors = [stress(found.line, piece) for piece in range(len(found.line.segments))]
     for torques, endless in zip(vibration.vibratory.T.tolist(), vibration.endless):
         yield [
-            {} if endless else {"M_vibratory": torque} | ({} if factor is None else {"tau_vibratory": factor * torque})
+            {}
+            if endless
+            else {"M_vibratory": torque}
+            | ({} if factor is None else {"tau_vibratory": factor * torque})
             for torque, factor in zip(torques, factors)
         ]
 
@@ -246,7 +293,11 @@ def _of_piece(piece: SegmentTorque) -> dict[str, float]:
 
 def torsion_left_out(found: ShaftVibration) -> Iterator[LeftOut]:
     """Yield what torsional vibration leaves out."""
-    bare = [found.segment_name(index) for index, piece in enumerate(found.line.segments) if not piece.sections]
+    bare = [
+        found.segment_name(index)
+        for index, piece in enumerate(found.line.segments)
+        if not piece.sections
+    ]
     if found.obstacle:
         yield LeftOut("forced vibration, torques and stresses", found.obstacle)
     elif bare:
@@ -258,15 +309,21 @@ def torsion_left_out(found: ShaftVibration) -> Iterator[LeftOut]:
 
 def torsion_warnings(case: Case) -> Iterator[str]:
     """Yield which of the usual critical speeds are near the working speed; raises as the report does."""
-    yield from _near_speeds(_limited(case.torsion), case.torsion.critical_speeds(_MODES, _HIGHEST_CRITICAL))
+    yield from _near_speeds(
+        _limited(case.torsion), case.torsion.critical_speeds(_MODES, _HIGHEST_CRITICAL)
+    )
 
 
 def _near_speeds(found: ShaftVibration, critical: Sequence[Critical]) -> Iterator[str]:
     """Yield, mode by mode, the critical speeds near the working speed, the strongest first."""
     for mode in sorted({one.mode for one in critical}):
-        near = sorted((one for one in critical if one.mode == mode and one.near), key=lambda one: -one.share)
+        near = sorted(
+            (one for one in critical if one.mode == mode and one.near), key=lambda one: -one.share
+        )
         if near and found.machine.speed is not None:
-            listed = ", ".join(f"{one.order:g} ({100 * (one.distance or 0.0):+.3g} %)" for one in near)
+            listed = ", ".join(
+                f"{one.order:g} ({100 * (one.distance or 0.0):+.3g} %)" for one in near
+            )
             plural = "s" if len(near) > 1 else ""
             yield (
                 f"mode {mode}: critical speed{plural} of order{plural} {listed} within 10 % of the working speed "
@@ -295,7 +352,9 @@ def _torsion_notes(found: ShaftVibration, usual: bool, hidden: bool) -> Iterator
         if found.summed is not None:
             names = [f"{order:g}" for order in found.summed]
             listed = f"order{'s' if len(names) > 1 else ''} {', '.join(names)}"
-            orders = listed if len(names) <= 4 else f"{len(names)} orders from {names[0]} to {names[-1]}"
+            orders = (
+                listed if len(names) <= 4 else f"{len(names)} orders from {names[0]} to {names[-1]}"
+            )
         if found.remainder is not None:
             more = f" (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
         taker = "what holds it" if found.chain.is_held else line.masses[line.load].name

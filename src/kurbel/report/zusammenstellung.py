@@ -14,16 +14,34 @@ from kurbel.declared.unit_systems import shown_unit
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import PHI, Quantity, by_id, called
-from kurbel.tables.tables import Column, Part, PlaceTable, Report, Value
+from kurbel.tables.tables import CellValue, Column, Part, PlaceTable, Report
 
 _EACH = (
     ("b", Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R")),
     ("c", Quantity("velocity_factor", "sin(φ+ψ)/cos ψ", "ratio", "c over v, and T over P")),
     ("x", Quantity("displacement_factor", "x/R", "ratio", "x over R")),
     ("psi", Quantity("psi", "ψ", "angle", "Angle between connecting rod and stroke line")),
-    ("S", Quantity("rod_force_factor", "S/P", "ratio", "Rod force over piston force, 1/cos ψ (R 300)")),
-    ("N", Quantity("guide_force_factor", "N/P", "ratio", "Guide force over piston force, tan ψ (R 301)")),
-    ("D", Quantity("radial_force_factor", "D/P", "ratio", "Radial over piston force, cos(φ+ψ)/cos ψ (R 302)")),
+    (
+        "S",
+        Quantity(
+            "rod_force_factor", "S/P", "ratio", "Rod force over piston force, 1/cos ψ (R 300)"
+        ),
+    ),
+    (
+        "N",
+        Quantity(
+            "guide_force_factor", "N/P", "ratio", "Guide force over piston force, tan ψ (R 301)"
+        ),
+    ),
+    (
+        "D",
+        Quantity(
+            "radial_force_factor",
+            "D/P",
+            "ratio",
+            "Radial over piston force, cos(φ+ψ)/cos ψ (R 302)",
+        ),
+    ),
     (
         "T_b",
         Quantity(
@@ -45,12 +63,25 @@ _ODD = "velocity_factor", "psi", "guide_force_factor", "inertia_torque_factor"
 
 
 ROOTS = by_id(
-    Quantity("phi_b_zero", "φ_b=0", "angle", "Crank angle of b = 0 and of the largest c, on the outstroke"),
+    Quantity(
+        "phi_b_zero",
+        "φ_b=0",
+        "angle",
+        "Crank angle of b = 0 and of the largest c, on the outstroke",
+    ),
     Quantity("x_b_zero", "x/R", "ratio", "x over R there"),
     Quantity("c_max_factor", "c_max/v", "ratio", "Largest c over v"),
     Quantity("phi_b_zero_book", "φ_b0=0", "angle", "Crank angle of b = 0 by first order (R 291)"),
-    Quantity("x_b_zero_book", "x_0/R", "ratio", "x over R there, by first order (B 22, example 33)"),
-    Quantity("phi_square", "φ_⊥", "angle", "Crank angle at which the rod is square to the crank", "phi_square"),
+    Quantity(
+        "x_b_zero_book", "x_0/R", "ratio", "x over R there, by first order (B 22, example 33)"
+    ),
+    Quantity(
+        "phi_square",
+        "φ_⊥",
+        "angle",
+        "Crank angle at which the rod is square to the crank",
+        "phi_square",
+    ),
 )
 """Of one L/R, by id."""
 
@@ -113,7 +144,9 @@ def _ids_of(rows: Iterable[str]) -> list[str]:
     return [*dict.fromkeys(ids)]
 
 
-def _part(ratio: float, symbols: Mapping[str, tuple[str, str]], angles: Sequence[float], formula: str) -> Part:
+def _part(
+    ratio: float, symbols: Mapping[str, tuple[str, str]], angles: Sequence[float], formula: str
+) -> Part:
     """Return the rows of one L/R; symbols: of the rows by their ids, in Greek letters and in ASCII.
 
     Raises UsageError if the crank cannot turn.
@@ -162,7 +195,9 @@ def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
     if formula == "first-order":
         factors["velocity_factor"] = formulas.first_order_velocity(sin, cos, lam)
         factors["displacement_factor"] = formulas.first_order_displacement(sin, cos, lam)
-    factors["inertia_torque_factor"] = -factors["acceleration_factor"] * factors["velocity_factor"] + 0.0
+    factors["inertia_torque_factor"] = (
+        -factors["acceleration_factor"] * factors["velocity_factor"] + 0.0
+    )
     factors["stroke_share"] = factors["displacement_factor"] / 2
     return factors
 
@@ -193,7 +228,9 @@ def _roots(ratios: tuple[float, ...]) -> PlaceTable:
         alone = _DIGITS.get(quantity.id, 0)
         columns.append(Column(quantity.id, *symbols, unit, values, quantity.text, alone=alone))
     names = tuple((f"L/R_=_{ratio:g}",) for ratio in ratios)
-    title = "Where b = 0 and c is largest: exactly, by first order, and by the rod square to the crank"
+    title = (
+        "Where b = 0 and c is largest: exactly, by first order, and by the rod square to the crank"
+    )
     return PlaceTable("roots", title, ("ratio",), names, tuple(columns))
 
 
@@ -271,7 +308,7 @@ _SIGNS = "±: + on the outstroke, − on the return stroke, as the book prints i
 _MISPRINTS = "* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."
 
 
-def _misprints(values: Sequence[Value], figures: Sequence[Value]) -> tuple[int, ...]:
+def _misprints(values: Sequence[CellValue], figures: Sequence[CellValue]) -> tuple[int, ...]:
     """Return the indices of the printed figures that are not the values rounded to three decimals."""
     largest = _HALF_UNIT * (1 + 1e-9)  # a figure may round a tie the other way
     return tuple(

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from kurbel.arrays import Array
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
@@ -19,12 +19,12 @@ from kurbel.solver.chapters.harmonics import MachineOrders
 from kurbel.solver.chapters.stress import CrankshaftStrength
 from kurbel.solver.chapters.torsion import ShaftVibration
 from kurbel.solver.effort import TurningEffort
-from kurbel.solver.figures import Figure, Results, Shown, rows_of
+from kurbel.solver.figures import Figure, NotebookView, Results, result_rows
 from kurbel.solver.flywheel import DeadCentre, MachineTurning
 from kurbel.solver.forces import CylinderForces
 
 
-class Case(Shown):
+class Case(NotebookView):
     """A machine with its results; count: of how many machines its numbers are arrays (machines,), None for one.
 
     >>> from kurbel.machine import Cylinder, Machine
@@ -45,18 +45,25 @@ class Case(Shown):
         why = ""
         for chapter in CHAPTERS:
             with_offers = chapter.kind is CylinderForces and self.cylinders
-            rows = self.cylinders[0].rows if with_offers else rows_of(chapter.kind)
+            rows = self.cylinders[0].rows if with_offers else result_rows(chapter.kind)
             if called(name, (row.quantity for row in rows.key_values.values())):
                 found = chapter.of(self)
                 if len(found) == 1:
                     return found[0][name]
                 why = chapter.each.format(name) if found else why or f"this machine has no {name}"
-        every = tuple(id for chapter in CHAPTERS for id in rows_of(chapter.kind).key_values)
-        raise UsageError(why or f"no key value '{shown(name)}'{did_you_mean(name, every)}")
+        every = tuple(id for chapter in CHAPTERS for id in result_rows(chapter.kind).key_values)
+        raise UsageError(
+            why or f"no key value '{text_in_one_line(name)}'{did_you_mean(name, every)}"
+        )
 
     def results(self, command: str) -> list[Results]:
         """Return all results of a command; raises what these raise, UsageError where the machine has none."""
-        return [one for chapter in CHAPTERS if chapter.kind.command == command for one in chapter.of(self)]
+        return [
+            one
+            for chapter in CHAPTERS
+            if chapter.kind.command == command
+            for one in chapter.of(self)
+        ]
 
     def __repr__(self) -> str:
         return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
@@ -130,9 +137,16 @@ class Chapter(NamedTuple):
 
 
 CHAPTERS = (
-    Chapter(CylinderForces, lambda case: case.cylinders, "each cylinder has its own {}: ask one of case.cylinders"),
+    Chapter(
+        CylinderForces,
+        lambda case: case.cylinders,
+        "each cylinder has its own {}: ask one of case.cylinders",
+    ),
     Chapter(MachineTurning, lambda case: [case.flywheel]),
-    Chapter(DeadCentre, lambda case: [DeadCentre(one, case.effort.cycle) for one in case.cylinders]),
+    Chapter(
+        DeadCentre,
+        lambda case: [DeadCentre(cylinder, case.effort.cycle) for cylinder in case.cylinders],
+    ),
     Chapter(CrankshaftStrength, lambda case: [case.stress]),
     Chapter(
         Bearing,

@@ -29,7 +29,9 @@ def _own_end(state: Chambers, end: str) -> Pressure | None:
 
 def _own_pressure(state: Chambers, end: str) -> Array | None:
     gas, chamber = state.drive.own_gas, _own_end(state, end)
-    return state.pressure(chamber) + spread(gas.base, state.drive.index) if gas and chamber else None
+    return (
+        state.pressure(chamber) + spread(gas.base, state.drive.index) if gas and chamber else None
+    )
 
 
 def _own_volume(state: Chambers, end: str) -> Number | None:
@@ -109,7 +111,9 @@ class Chambers(MotionColumns):
         "volume_rise",
         "Rate of change of the head-end volume with the crank angle",
         lambda state: (
-            state.drive.own_gas.piston.head_area * np.radians(1.0) * state.slope if _own_end(state, "head") else None
+            state.drive.own_gas.piston.head_area * np.radians(1.0) * state.slope
+            if _own_end(state, "head")
+            else None
         ),
         on_request=("forces",),
     )
@@ -132,7 +136,11 @@ class Chambers(MotionColumns):
         "P_297",
         "force",
         "The same with the mean of both piston areas (R 297)",
-        lambda state: sum(state.force_on(gas, mean_area=True) for gas in state.drive.gas) if state.drive.gas else None,
+        lambda state: (
+            sum(state.force_on(gas, mean_area=True) for gas in state.drive.gas)
+            if state.drive.gas
+            else None
+        ),
         on_request=("forces",),
     )
 
@@ -155,7 +163,11 @@ class Chambers(MotionColumns):
         if mean_area:
             head = crank = (head + crank) / 2
         sense = -1.0 if gas.turned else 1.0
-        return sum(self.pressure(end) * (area * sense) for end, area in ((gas.head, head), (gas.crank, -crank)) if end)
+        return sum(
+            self.pressure(end) * (area * sense)
+            for end, area in ((gas.head, head), (gas.crank, -crank))
+            if end
+        )
 
     @cached_property
     def piston_forces(self) -> list[Array]:
@@ -165,7 +177,9 @@ class Chambers(MotionColumns):
     def force_of(self, shares: Sequence[Truth]) -> Array | None:
         """Return the gas force in N on those pistons whose share is true, in each machine; None without any."""
         each = zip(self.piston_forces, shares)
-        counted = [force * spread(share, self.drive.index) for force, share in each if share is not False]
+        counted = [
+            force * spread(share, self.drive.index) for force, share in each if share is not False
+        ]
         return sum(counted) if counted else None
 
     P_driving = value(

@@ -20,7 +20,7 @@ from kurbel.machine.batch import varies
 from kurbel.machine.cylinder import may_lock
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.extreme import Extremes
-from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, Samples, joined, refined
+from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, Samples, joined_pieces, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import result
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
@@ -85,7 +85,9 @@ class SampledCylinder:
             if some(drive.ring_surface != 0):
                 pieces, state = _cut(drive, pieces, state, lambda one: [one.pressure_difference])
             if drive.rubs or drive.yoke_rubs:
-                pieces, state = _cut(drive, pieces, state, lambda one: [_sense(one.without_pin_friction)])
+                pieces, state = _cut(
+                    drive, pieces, state, lambda one: [_sense(one.without_pin_friction)]
+                )
             _refuse_locking(state, pieces)
             if drive.pin_friction:
                 pieces, state = _cut(drive, pieces, state, _loads_of_pins)
@@ -104,7 +106,9 @@ class SampledCylinder:
         """Largest last coefficients of the Chebyshev series on pieces that could be halved, over the largest value."""
         values = np.stack(_known(self.pieces, _smooth(self.samples)))
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
-        tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
+        tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[
+            :, self.pieces.half > NARROWEST
+        ]
         return float((tails.max(axis=1) / size).max())
 
     # extremes and zeros
@@ -116,7 +120,10 @@ class SampledCylinder:
 
     def extremes_over(self, columns: Mapping[str, Number | None]) -> dict[str, Extremes]:
         """Return the extremes in SI of columns of `samples` by id, without those that are None."""
-        pieces, names = self.pieces, [name for name, values in columns.items() if values is not None]
+        pieces, names = (
+            self.pieces,
+            [name for name, values in columns.items() if values is not None],
+        )
         found = pieces.extremes(_known(pieces, columns.values())).each(self.result) if names else []
         return dict(zip(names, found))
 
@@ -131,10 +138,14 @@ def _state_on(drive: Drive, pieces: Pieces) -> State:
 
     These are computed once.
     """
-    if drive.count is None or varies((drive.mechanism, drive.cylinder.timed_pistons, drive.machine.ambient)):
+    if drive.count is None or varies(
+        (drive.mechanism, drive.cylinder.timed_pistons, drive.machine.ambient)
+    ):
         return State.on(drive, pieces)
     one = State.on(drive, pieces.taken(pieces.machine == 0))
-    return _restored(drive, pieces, [np.tile(values, drive.count) for values in _before_friction(one)])
+    return _restored(
+        drive, pieces, [np.tile(values, drive.count) for values in _before_friction(one)]
+    )
 
 
 def _halved(
@@ -159,20 +170,28 @@ def _cut(
 ) -> tuple[Pieces, State]:
     """Return the pieces cut where one of these columns changes sign, and the state on them."""
     pieces, state, values = _halved(drive, pieces, state, columns)
-    passed = [pieces.zeros(one) for one in values]
+    passed = [pieces.zeros(value) for value in values]
     cut = pieces.split(Angles(*(np.concatenate(each) for each in zip(*passed))))
     if cut is pieces:
         return pieces, state
     source, new = cut.kept_of(pieces)  # of pieces that are not cut the values are kept
     fresh = cut.taken(new)
     known = _before_friction(state), _before_friction(State.on(drive, fresh))
-    whole, both = joined([(pieces, source, known[0]), (fresh, np.arange(len(new)), known[1])])
+    whole, both = joined_pieces(
+        [(pieces, source, known[0]), (fresh, np.arange(len(new)), known[1])]
+    )
     return whole, _restored(drive, whole, both)
 
 
 def _before_friction(state: State) -> list[Array]:
     """Return motion and gas forces, which are independent of friction and from which `_restored` makes a state."""
-    motion = [state.angle.sin, state.angle.cos, state.slope, state.curvature, *(state.rod_angle or ())]
+    motion = [
+        state.angle.sin,
+        state.angle.cos,
+        state.slope,
+        state.curvature,
+        *(state.rod_angle or ()),
+    ]
     return [state.filled(one) for one in (*motion, *state.piston_forces)]
 
 
@@ -210,14 +229,18 @@ def _refuse_locking(state: State, pieces: Pieces) -> None:
 
 def _smooth(state: State) -> list[Number | None]:
     """Return the quantities that decide how often pieces are halved: they must be polynomials on every piece."""
-    offered = [one.of(state) for one in state.mechanism.OFFERS if one.quantity.extremes]
-    forces = (state.P_gas, state.P, state.N, state.T, *(state.rubbing or ())) if state.drive.has_force else ()
+    offered = [offer.of(state) for offer in state.mechanism.OFFERS if offer.quantity.extremes]
+    forces = (
+        (state.P_gas, state.P, state.N, state.T, *(state.rubbing or ()))
+        if state.drive.has_force
+        else ()
+    )
     return [state.curvature, *forces, *offered]
 
 
 def _known(pieces: Pieces, values: Iterable[Number | None]) -> list[Array]:
     """Return those of the columns that are not None, at the nodes of pieces, each (nodes, pieces)."""
-    return [pieces.filled(one) for one in values if one is not None]
+    return [pieces.filled(value) for value in values if value is not None]
 
 
 def reversals(drive: Drive, pieces: Pieces, values: Array) -> tuple[Any, ...]:
@@ -237,9 +260,11 @@ def where_is(pieces: Pieces, values: Array, value: float) -> Where:
     At a jump over the value it is the angle of the jump; one that only leads to the value does not pass it.
     """
     size = np.maximum(pieces.largest(values), abs(value))
-    rising, falling = (pieces.zeros(sign * (values - value), size).degrees.tolist() for sign in (1, -1))
+    rising, falling = (
+        pieces.zeros(sign * (values - value), size).degrees.tolist() for sign in (1, -1)
+    )
     passed = [one for one in rising if any(abs(one - other) < 1e-6 for other in falling)]
-    high, high_at, low, low_at = (float(one[0, 0]) for one in pieces.extremes(values[None]))
+    high, high_at, low, low_at = (float(extreme[0, 0]) for extreme in pieces.extremes(values[None]))
     ends = ((high, high_at), (low, low_at))
     reached = [degrees for end, degrees in ends if math.isclose(end, value, rel_tol=1e-14)]
     return Where(tuple(sorted({*passed, *reached})), (low, high))

@@ -78,7 +78,11 @@ class Drive:
     """
 
     def __init__(
-        self, machine: Machine, cylinder: Cylinder, count: int | None = None, index: Indices | None = None
+        self,
+        machine: Machine,
+        cylinder: Cylinder,
+        count: int | None = None,
+        index: Indices | None = None,
     ) -> None:
         self.machine, self.cylinder, self.count, self.index = machine, cylinder, count, index
         self.name, self.mechanism = cylinder.name, cylinder.mechanism
@@ -96,7 +100,9 @@ class Drive:
             if rod and exact
             else None
         )
-        self.rod_centrifugal_force: Number = self.centrifugal(rod.mass * (1 - rod.share)) if rod and not exact else 0.0
+        self.rod_centrifugal_force: Number = (
+            self.centrifugal(rod.mass * (1 - rod.share)) if rod and not exact else 0.0
+        )
         self.has_inertia = masses is not None and self.omega is not None
 
         inclination = machine.inclination_of(cylinder)
@@ -127,7 +133,9 @@ class Drive:
         self.ring_force: Number = 0.0
         self.ring_surface: Number = 0.0
         if rings:
-            surface: Number = rings.count * math.pi * cylinder.pistons[0].bore * rings.height * rings.coefficient
+            surface: Number = (
+                rings.count * math.pi * cylinder.pistons[0].bore * rings.height * rings.coefficient
+            )
             if isinstance(rings.pressure, GasOnRings):
                 self.ring_surface = surface * rings.pressure.gas
             else:
@@ -139,7 +147,12 @@ class Drive:
         if self.count is None:
             return self
         other = Drive(taken(self.machine, index), taken(self.cylinder, index), self.count, index)
-        other.gas, other.driving, other.driven, other.pumping = self.gas, self.driving, self.driven, self.pumping
+        other.gas, other.driving, other.driven, other.pumping = (
+            self.gas,
+            self.driving,
+            self.driven,
+            self.pumping,
+        )
         return other
 
     @property
@@ -150,7 +163,9 @@ class Drive:
         breaks = Angles(np.repeat(np.arange(count), centres.shape[1]), centres.ravel())
         jumps = [breaks, *(starts for gas in self.gas for starts in gas.starts)]
         whole = Angles(*(np.concatenate(parts) for parts in zip(*jumps)))
-        return Pieces.between(whole, count, self.cycle, 16 if len(whole.degrees) < _DENSE * count else 6)
+        return Pieces.between(
+            whole, count, self.cycle, 16 if len(whole.degrees) < _DENSE * count else 6
+        )
 
     def centrifugal(self, mass: Number) -> Number:
         """Return the centrifugal force m R ω² in N of a mass in kg at the crank pin; 0 where no speed is given."""
@@ -160,7 +175,9 @@ class Drive:
     def weight_of(self, mass: Number) -> tuple[Number, Number]:
         """Return the weight in N of a mass in kg along the stroke line and on the guide; 0 where it is left out."""
         incline = self._incline
-        return (mass * GRAVITY * incline.sin, mass * GRAVITY * incline.cos) if incline else (0.0, 0.0)
+        return (
+            (mass * GRAVITY * incline.sin, mass * GRAVITY * incline.cos) if incline else (0.0, 0.0)
+        )
 
     # pressures
 
@@ -172,7 +189,9 @@ class Drive:
             if piston.indicator:
                 turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
                 repeats, ambient = self.revolutions // turns, self.machine.ambient
-                found.append(PistonGas(piston, self.mechanism, 360.0 * turns, ambient, repeats, self.count))
+                found.append(
+                    PistonGas(piston, self.mechanism, 360.0 * turns, ambient, repeats, self.count)
+                )
         return tuple(found)
 
     @property
@@ -216,7 +235,9 @@ class Drive:
         if friction is None:
             return None
         coefficients = (friction.crank_pin, friction.crosshead_pin, friction.journals)
-        if not any(one is not None and some(one != 0) for one in coefficients):
+        if not any(
+            coefficient is not None and some(coefficient != 0) for coefficient in coefficients
+        ):
             return None
         pin, journal = friction.crank_pin_diameter, friction.journal_diameter
         if isinstance(self.mechanism, ScotchYoke) and self.mechanism.pin_diameter is not None:
@@ -226,7 +247,9 @@ class Drive:
             (friction.crosshead_pin, friction.crosshead_pin_diameter),
             (friction.journals, shaft.journal_diameter if shaft and journal is None else journal),
         )
-        at_pin, at_crosshead, at_journals = (0.0 if f is None or d is None else f * d / 2 for f, d in given)
+        at_pin, at_crosshead, at_journals = (
+            0.0 if f is None or d is None else f * d / 2 for f, d in given
+        )
         line = SupportedShaft(self.machine) if shaft and not shaft_obstacle(self.machine) else None
         return PinFriction(at_pin, at_crosshead, at_journals, line)
 
@@ -243,6 +266,6 @@ class Drive:
 def any_of(conditions: Iterable[Truth]) -> Truth:
     """Return whether any of the conditions holds, each a bool or one of every machine, (machines,)."""
     found: Truth = False
-    for one in conditions:
-        found = found | one
+    for condition in conditions:
+        found = found | condition
     return found

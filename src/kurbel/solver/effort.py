@@ -23,7 +23,7 @@ from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.turning import Harmonics, Known, Swing
+from kurbel.machine.turning import Harmonics, KnownDiagram, Swing
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.pieces import Angles, Pieces, SampledExtremes, common
 from kurbel.solver.drive import Drive, any_of
@@ -84,13 +84,19 @@ class TurningEffort:
     floats, `excess` where the machine cannot run.
     """
 
-    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], count: int | None = None) -> None:
+    def __init__(
+        self, machine: Machine, cylinders: Sequence[CylinderForces], count: int | None = None
+    ) -> None:
         self.machine, self.cylinders, self.count = machine, tuple(cylinders), count
         self.refused: Flags = np.zeros(count or 1, dtype=bool)
         self.cycle = 360.0 * machine.revolutions
         self.diagram = machine.load.diagram if machine.load else None
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
-        self.swing: Any = machine.effort.energy(machine.revolutions) if isinstance(machine.effort, Swing) else None
+        self.swing: Any = (
+            machine.effort.energy(machine.revolutions)
+            if isinstance(machine.effort, Swing)
+            else None
+        )
         # cylinders in which a force acts, identical ones in one group
         groups: dict[CylinderForces, list[CylinderForces]] = {}
         for forces in cylinders:
@@ -109,13 +115,17 @@ class TurningEffort:
         """The cycle in pieces on which every torque is a polynomial. Raises UsageError where no force acts."""
         name, speed, count = self.machine.name, self.machine.speed, self.count or 1
         if not self.groups and not self.machine.effort:
-            raise UsageError(f"{name}: no force acts, so there is no torque; kurbel check shows why")
+            raise UsageError(
+                f"{name}: no force acts, so there is no torque; kurbel check shows why"
+            )
         if speed is not None:
             beyond = (speed != 0) & ((speed <= _SLOWEST) | (speed >= 1 / _SLOWEST))
             self.refused |= beyond
             if self.count is None and beyond:
                 size = "large" if speed > 1 else "small"
-                raise UsageError(f"{name}: a speed of {show(speed, 'speed')} is too {size} to compute with")
+                raise UsageError(
+                    f"{name}: a speed of {show(speed, 'speed')} is too {size} to compute with"
+                )
         known = [corners(one, self.cycle) for one in (self.machine.effort, self.diagram) if one]
         breaks = np.concatenate([np.zeros(0), *known])
         cuts = Angles(np.repeat(np.arange(count), len(breaks)), np.tile(breaks, count))
@@ -132,18 +142,27 @@ class TurningEffort:
             own = cylinders[0].pieces
             values = own.filled(torque(cylinders[0].samples)) * own.of(factor)
             size = size + len(cylinders) * own.largest(values)
-            for one in cylinders:
-                whole = whole + pieces.carried(values, own, position(one))
+            for cylinder in cylinders:
+                whole = whole + pieces.carried(values, own, position(cylinder))
         lasting = unless_cancelled(pieces.largest(whole), size, _CANCELLED) != 0
         return whole if lasting.all() else np.where(pieces.of(lasting), whole, 0.0)
 
-    def at(self, pieces: Pieces, values: Array, degrees: Array, within: Array, machine: Indices | None = None) -> Array:
+    def at(
+        self,
+        pieces: Pieces,
+        values: Array,
+        degrees: Array,
+        within: Array,
+        machine: Indices | None = None,
+    ) -> Array:
         """Return samples at crank angles (k,), on the sides of jumps that hold `within`.
 
         machine: of each angle, (k,), where there are many. What is rounding of their largest value is 0.
         """
         own = np.zeros(len(degrees), dtype=np.intp) if machine is None else machine
-        return unless_cancelled(pieces.at(values, own, degrees, within), pieces.largest(values)[own], _CANCELLED)
+        return unless_cancelled(
+            pieces.at(values, own, degrees, within), pieces.largest(values)[own], _CANCELLED
+        )
 
     # the effort
 
@@ -179,7 +198,11 @@ class TurningEffort:
         """Return the loss, at most one term, of driving pistons that share their rods with driven ones; see `share`."""
         drive = group[0].drive
         factor = where(drive.drives & drive.driven, self.machine.efficiency - 1.0, 0.0)
-        return [Term(factor, group, lambda state: state.P_driving * state.slope)] if some(factor != 0) else []
+        return (
+            [Term(factor, group, lambda state: state.P_driving * state.slope)]
+            if some(factor != 0)
+            else []
+        )
 
     @cached_property
     def terms(self) -> list[Term]:
@@ -190,7 +213,11 @@ class TurningEffort:
     @cached_property
     def M(self) -> Array:
         """The turning effort in N m, with the losses of the machine; see `share`."""
-        return self.sampled(self.terms) if self.given is None else self.given * self.pieces.of(self.share(None))
+        return (
+            self.sampled(self.terms)
+            if self.given is None
+            else self.given * self.pieces.of(self.share(None))
+        )
 
     @cached_property
     def mean(self) -> Array:
@@ -215,8 +242,12 @@ class TurningEffort:
     @property
     def deficit(self) -> Array:
         """Mean of M less that of a load by points in N m, (machines,); 0 where they agree, and for another load."""
-        given = self.pieces.mean(torque_on(self.diagram, self.pieces)) if self.diagram else self.mean
-        return unless_cancelled(self.mean - given, np.maximum(np.abs(given), np.abs(self.mean)), _BALANCED)
+        given = (
+            self.pieces.mean(torque_on(self.diagram, self.pieces)) if self.diagram else self.mean
+        )
+        return unless_cancelled(
+            self.mean - given, np.maximum(np.abs(given), np.abs(self.mean)), _BALANCED
+        )
 
     # the masses
 
@@ -247,12 +278,18 @@ class TurningEffort:
         self.refused |= too_little
         if self.count is None and too_little.any():
             eta, mean = self.machine.efficiency, float(self.mean[0])
-            indicated = self.sampled([Term(1.0, group) for group in self.groups]) if self.given is None else self.given
+            indicated = (
+                self.sampled([Term(1.0, group) for group in self.groups])
+                if self.given is None
+                else self.given
+            )
             whole = float(self.mean_of(indicated)[0])
             runs = "with no efficiency"
             if whole >= 0:  # the mean is linear in η
                 least = 1 - (1 - eta) * whole / (whole - mean)
-                printed = next(one for digits in range(4, 17) if (one := round(least, digits)) >= least)
+                printed = next(
+                    one for digits in range(4, 17) if (one := round(least, digits)) >= least
+                )
                 runs = f"from 'efficiency: {printed}' on"
             raise NoSolutionError(
                 f"the machine cannot run: with the efficiency {eta:g} its driving pistons give a mean torque that is "
@@ -267,13 +304,19 @@ class TurningEffort:
     @property
     def missing_inertia(self) -> list[Term]:
         """What the losses take off the torque of the moving masses: η holds for it, too, but not for kinetic energy."""
-        return [Term(1 - share, one, quantity) for share, one, quantity in self.inertia_terms if some(share != 1)]
+        return [
+            Term(1 - share, one, quantity)
+            for share, one, quantity in self.inertia_terms
+            if some(share != 1)
+        ]
 
     @cached_property
     def true_excess(self) -> ExcessWork:
         """The excess that changes the kinetic energy: losses do not reduce its share of the moving masses."""
         missing = self.missing_inertia
-        return self._excess_by(self.excess.torque + self.sampled(missing)) if missing else self.excess
+        return (
+            self._excess_by(self.excess.torque + self.sampled(missing)) if missing else self.excess
+        )
 
 
 class ExcessWork:
@@ -288,7 +331,9 @@ class ExcessWork:
         uneven = pieces.largest(torque) > _UNIFORM * size
         self.torque = torque if uneven.all() else np.where(pieces.of(uneven), torque, 0.0)
         whole = pieces.running(self.torque)
-        gained = np.append(whole[-1, pieces.first[1:] - 1], whole[-1, -1])  # by the rounding of the mean
+        gained = np.append(
+            whole[-1, pieces.first[1:] - 1], whole[-1, -1]
+        )  # by the rounding of the mean
         self.E = np.asarray(whole - pieces.of(gained / pieces.cycle) * pieces.degrees)
 
     @cached_property
@@ -303,7 +348,9 @@ class ExcessWork:
         machine, heights = self.crossings.machine, self.pieces.at(self.E, *self.crossings)
         following = np.roll(heights, -1)
         # the last crossing of each machine is followed by its own first one
-        following[np.flatnonzero(np.diff(machine, append=-1))] = heights[np.flatnonzero(np.diff(machine, prepend=-1))]
+        following[np.flatnonzero(np.diff(machine, append=-1))] = heights[
+            np.flatnonzero(np.diff(machine, prepend=-1))
+        ]
         return following - heights
 
     @cached_property
@@ -324,7 +371,7 @@ class ExcessWork:
 # torques that are known from elsewhere
 
 
-def corners(given: Known, cycle: float) -> Array:
+def corners(given: KnownDiagram, cycle: float) -> Array:
     """Return the angles in degrees between which a torque is smooth; of waves so many that pieces resolve them."""
     if isinstance(given, Swing):
         return np.zeros(0)
@@ -334,7 +381,7 @@ def corners(given: Known, cycle: float) -> Array:
     return np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel()
 
 
-def torque_on(given: Known, pieces: Pieces) -> Array:
+def torque_on(given: KnownDiagram, pieces: Pieces) -> Array:
     """Return a torque in N m on pieces: M = mean + Σ c cos νφ + s sin νφ, or points with straight lines between them.
 
     Points repeat from their last angle on; at a jump the side counts that holds the middle of a piece. Of a swing the

@@ -2,7 +2,7 @@
 
 A class of results has its key values, and a class of columns its columns, as attributes with rows (`kurbel.quantity`).
 They are printed in the order of their definition, for people below the `Heading` before them. In the place of a
-`PartResults` are the rows of another class, in that of `Searched` the extremes of the columns.
+`PartResults` are the rows of another class, in that of `ExtremesOfColumns` the extremes of the columns.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, ClassVar, NamedTuple, TypeVar
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.errors import UsageError
 from kurbel.mechanisms import KeyOffer, Offer
@@ -24,14 +24,14 @@ from kurbel.quantity import (
     ITS_OWN,
     PHI,
     Computed,
-    Condition,
     ForEach,
     Formula,
     Heading,
     Lists,
     Of,
     Quantity,
-    Row,
+    QuantityRow,
+    ResultCondition,
     ambiguity,
     called,
 )
@@ -56,18 +56,18 @@ class Figure(NamedTuple):
         values = self.value if isinstance(self.value, tuple) else (self.value,)
         kind = self.quantity.kind
         unit = shown_unit(kind, "metric", max(map(abs, values), default=0.0))
-        numbers = ", ".join(f"{convert(one, kind, unit):#.4g}".rstrip(".") for one in values)
+        numbers = ", ".join(f"{convert(value, kind, unit):#.4g}".rstrip(".") for value in values)
         where = "" if self.degrees is None else f" at {self.degrees:.2f}°"
         return f"{numbers} {self.quantity.marked(unit)}".rstrip() + where
 
 
-class Shown:
+class NotebookView:
     """How a notebook shows results; `kurbel.notebook` sets it, since the solver may not import tables and pictures."""
 
     as_html: ClassVar[Of[str] | None] = None
 
     def _repr_html_(self) -> str | None:
-        return Shown.as_html(self) if Shown.as_html else None
+        return NotebookView.as_html(self) if NotebookView.as_html else None
 
 
 # columns
@@ -81,11 +81,16 @@ class AtAngles:
 
     def __init_subclass__(cls) -> None:
         # a column of several parts is an attribute for each of them
-        for row in (row for item in list(vars(cls).values()) if isinstance(item, ForEach) for row in item.rows):
+        for row in (
+            row
+            for item in list(vars(cls).values())
+            if isinstance(item, ForEach)
+            for row in item.rows
+        ):
             setattr(cls, row.quantity.id, property(row.of, doc=row.quantity.text))
 
     @property
-    def rows(self) -> Mapping[str, Row]:
+    def rows(self) -> Mapping[str, QuantityRow]:
         """The rows of its columns, by id."""
         return column_rows(type(self))
 
@@ -95,31 +100,37 @@ class AtAngles:
         return None if row is None else row.of(self)
 
 
-_COLUMN_ROWS: dict[tuple[type, tuple[Offer, ...]], Mapping[str, Row]] = {}
+_COLUMN_ROWS: dict[tuple[type, tuple[Offer, ...]], Mapping[str, QuantityRow]] = {}
 
 
-def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mapping[str, Row]:
+def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mapping[str, QuantityRow]:
     """Return the rows of a class of columns, and of what mechanisms add to it, in printed order."""
     if (state, offers) in _COLUMN_ROWS:
         return _COLUMN_ROWS[state, offers]
-    rows = list[Row]()
+    rows = list[QuantityRow]()
     for owner in (one for one in reversed(state.__mro__) if issubclass(one, AtAngles)):
         for item in vars(owner).values():
             for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
                 own = row.quantity.commands == ITS_OWN
-                rows.append(row._replace(quantity=row.quantity._replace(commands=owner.commands)) if own else row)
-    rows += [Row(one.quantity, one.of, one.unless) for one in offers]
+                rows.append(
+                    row._replace(quantity=row.quantity._replace(commands=owner.commands))
+                    if own
+                    else row
+                )
+    rows += [QuantityRow(offer.quantity, offer.of, offer.unless) for offer in offers]
     over_phi = dict.fromkeys(word for row in rows for word in row.quantity.commands)
-    every = _in_order([Row(PHI._replace(commands=tuple(over_phi)), lambda one: one.phi), *rows])
+    every = _in_order(
+        [QuantityRow(PHI._replace(commands=tuple(over_phi)), lambda one: one.phi), *rows]
+    )
     return _COLUMN_ROWS.setdefault((state, offers), every)
 
 
-def _in_order(rows: Iterable[Row]) -> dict[str, Row]:
+def _in_order(rows: Iterable[QuantityRow]) -> dict[str, QuantityRow]:
     """Return rows by id in the order in which they are printed, the first of those with one id.
 
     Several `after` the same one keep their order; one without a heading has that of the one before it.
     """
-    found: dict[str, Row] = {}
+    found: dict[str, QuantityRow] = {}
     for row in rows:
         found.setdefault(row.quantity.id, row)
     ordered = [row.quantity for row in found.values() if not row.quantity.after]
@@ -127,7 +138,9 @@ def _in_order(rows: Iterable[Row]) -> dict[str, Row]:
         place = [other.id for other in ordered].index(quantity.after) + 1
         while place < len(ordered) and ordered[place].after == quantity.after:
             place += 1
-        ordered.insert(place, quantity._replace(heading=quantity.heading or ordered[place - 1].heading))
+        ordered.insert(
+            place, quantity._replace(heading=quantity.heading or ordered[place - 1].heading)
+        )
     return {quantity.id: found[quantity.id]._replace(quantity=quantity) for quantity in ordered}
 
 
@@ -137,8 +150,8 @@ def _in_order(rows: Iterable[Row]) -> dict[str, Row]:
 class Rows(NamedTuple):
     """The rows of a class of results, by id, in the order in which they are printed."""
 
-    columns: Mapping[str, Row]
-    key_values: Mapping[str, Row]
+    columns: Mapping[str, QuantityRow]
+    key_values: Mapping[str, QuantityRow]
 
     @property
     def lists(self) -> Lists:
@@ -147,18 +160,23 @@ class Rows(NamedTuple):
 
     def changed(self, change: Callable[[Quantity], Quantity]) -> Rows:
         """Return the rows with other quantities."""
-        found = ({id: row._replace(quantity=change(row.quantity)) for id, row in rows.items()} for rows in self)
+        found = (
+            {id: row._replace(quantity=change(row.quantity)) for id, row in rows.items()}
+            for rows in self
+        )
         return Rows(*found)
 
 
 class PartResults(Computed[V]):
     """Results that are a part of others; their rows are printed in the place of the attribute."""
 
-    def __init__(self, function: Of[V], kind: type[Results], unless: Condition | None) -> None:
+    def __init__(
+        self, function: Of[V], kind: type[Results], unless: ResultCondition | None
+    ) -> None:
         super().__init__(function, Quantity("", "", "", function.__doc__ or ""))
         self.kind, self.unless = kind, unless
 
-    def of_whole(self, rows: Iterable[Row]) -> Iterator[Row]:
+    def of_whole(self, rows: Iterable[QuantityRow]) -> Iterator[QuantityRow]:
         """Yield the rows of the part for the results that it is a part of; None where they have no such part."""
 
         def of_part(function: Formula, results: object) -> Any:
@@ -166,10 +184,14 @@ class PartResults(Computed[V]):
             return None if found is None else function(found)
 
         for quantity, of, unless in rows:
-            yield Row(quantity, partial(of_part, of), self.unless or (unless and partial(of_part, unless)))
+            yield QuantityRow(
+                quantity, partial(of_part, of), self.unless or (unless and partial(of_part, unless))
+            )
 
 
-def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Of[V]], PartResults[V]]:
+def part(
+    kind: type[Results], unless: ResultCondition | None = None
+) -> Callable[[Of[V]], PartResults[V]]:
     """Return a decorator for a method that returns results of this class, or None where there is no such part.
 
     unless: takes the results; where it is true, all of the part says nothing new.
@@ -177,7 +199,7 @@ def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Of[V
     return lambda function: PartResults(function, kind, unless)
 
 
-class Searched:
+class ExtremesOfColumns:
     """The place of the extremes of columns among the key values of a class; without it they are printed last."""
 
     ENDS: ClassVar[dict[str, Callable[[Extremes], Extreme]]] = {
@@ -186,7 +208,7 @@ class Searched:
         "peak": lambda both: both.peak,
     }
 
-    def rows(self, columns: Iterable[Quantity]) -> Iterator[Row]:
+    def rows(self, columns: Iterable[Quantity]) -> Iterator[QuantityRow]:
         """Yield the key values that are extremes of columns, of results that have `extremes_of(id)`."""
 
         def extreme(column: str, end: str, results: Any) -> Extreme | None:
@@ -195,10 +217,10 @@ class Searched:
 
         for one in columns:
             for end in self.ENDS if one.peak else ("max", "min"):
-                yield Row(one.extreme(end), partial(extreme, one.id, end))
+                yield QuantityRow(one.extreme(end), partial(extreme, one.id, end))
 
 
-class Results(Shown):
+class Results(NotebookView):
     """Key values of a command, and its columns: attributes named by their ids, in SI, or results by name."""
 
     command: ClassVar[str] = ""
@@ -207,14 +229,14 @@ class Results(Shown):
 
     def __init_subclass__(cls) -> None:
         # what the class has through its parts, or as extremes, are attributes as well
-        for id, row in rows_of(cls).key_values.items():
+        for id, row in result_rows(cls).key_values.items():
             if not hasattr(cls, id):
                 setattr(cls, id, property(row.of, doc=row.quantity.text))
 
     @property
     def rows(self) -> Rows:
         """The rows that results of this kind may have."""
-        return rows_of(type(self))
+        return result_rows(type(self))
 
     @property
     def lists(self) -> Lists:
@@ -232,7 +254,9 @@ class Results(Shown):
     def key_values(self) -> dict[str, Figure]:
         """Return every key value that there is by its id, in the order in which they are printed."""
         found = ((row.quantity, row.of(self)) for row in self.rows.key_values.values())
-        return {quantity.id: _figure(quantity, value) for quantity, value in found if value is not None}
+        return {
+            quantity.id: _figure(quantity, value) for quantity, value in found if value is not None
+        }
 
     def columns(self, degrees: object, *names: str) -> dict[str, Array]:
         """Return φ and these columns (n,), or all that there are, in SI by id, at crank angles (n,) in degrees.
@@ -277,30 +301,41 @@ class Results(Shown):
 _ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...]], Rows] = {}
 
 
-def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tuple[KeyOffer, ...] = ()) -> Rows:
+def result_rows(
+    kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tuple[KeyOffer, ...] = ()
+) -> Rows:
     """Return the rows of a class of results, with the columns and key values that mechanisms add."""
     if (kind, offers, key_offers) in _ROWS:
         return _ROWS[kind, offers, key_offers]
     columns = column_rows(kind.state, offers) if kind.state else {}
     quantities = [row.quantity for row in columns.values()] or [one.quantity for one in offers]
     definitions: dict[str, object] = {}
-    for one in reversed(kind.__mro__):  # its own and inherited ones, in the order in which each was defined first
+    for one in reversed(
+        kind.__mro__
+    ):  # its own and inherited ones, in the order in which each was defined first
         definitions |= vars(one)
-    found, heading = list[Row](), ""
-    for item in (*definitions.values(), Searched()):  # of rows with one id the first counts
-        rows: Iterable[Row] = ()
+    found, heading = list[QuantityRow](), ""
+    for item in (
+        *definitions.values(),
+        ExtremesOfColumns(),
+    ):  # of rows with one id the first counts
+        rows: Iterable[QuantityRow] = ()
         if isinstance(item, Heading):
             heading = item.text
         elif isinstance(item, PartResults):
-            rows = item.of_whole(rows_of(item.kind, offers, key_offers).key_values.values())
-        elif isinstance(item, Searched):
-            rows = item.rows([one for one in quantities if kind.command in one.extremes])
+            rows = item.of_whole(result_rows(item.kind, offers, key_offers).key_values.values())
+        elif isinstance(item, ExtremesOfColumns):
+            rows = item.rows(
+                [quantity for quantity in quantities if kind.command in quantity.extremes]
+            )
         elif isinstance(item, (Computed, ForEach)):
             rows = item.rows
-        found += [one._replace(quantity=one.quantity.printed_by(kind.command, heading)) for one in rows]
+        found += [
+            one._replace(quantity=one.quantity.printed_by(kind.command, heading)) for one in rows
+        ]
     for offer in key_offers:
         if kind.command in offer.quantity.commands:
-            found.append(Row(offer.quantity.printed_by(kind.command), offer.of))
+            found.append(QuantityRow(offer.quantity.printed_by(kind.command), offer.of))
     return _ROWS.setdefault((kind, offers, key_offers), Rows(columns, _in_order(found)))
 
 
@@ -314,17 +349,22 @@ def crank_angles(degrees: object) -> Array:
     try:
         angles = np.asarray(degrees, dtype=float)
     except (TypeError, ValueError):
-        raise UsageError(f"crank angles are numbers of degrees, not {shown(repr(degrees))}") from None
+        raise UsageError(
+            f"crank angles are numbers of degrees, not {text_in_one_line(repr(degrees))}"
+        ) from None
     if not np.isfinite(angles).all():
         raise UsageError("crank angles are finite numbers of degrees, not nan or inf")
     return angles
 
 
-def _only(name: str, known: Mapping[str, Row], what: str) -> Row:
+def _only(name: str, known: Mapping[str, QuantityRow], what: str) -> QuantityRow:
     """Return the one row that a name means; raises UsageError for none and for several."""
     found = called(name, (row.quantity for row in known.values()))
     if len(found) != 1:
-        raise UsageError(ambiguity(name, found) or f"no {what} '{shown(name)}'{did_you_mean(name, tuple(known))}")
+        raise UsageError(
+            ambiguity(name, found)
+            or f"no {what} '{text_in_one_line(name)}'{did_you_mean(name, tuple(known))}"
+        )
     return known[found[0]]
 
 

@@ -29,7 +29,7 @@ from kurbel.quantity import Computed, Heading, key_value, value
 from kurbel.solver.chapters.coupling import ElasticCoupling, natural_order
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
-from kurbel.solver.figures import AtAngles, Results, Searched, part
+from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, part
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.motion import every_dead_centre
 from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
@@ -47,7 +47,9 @@ _CLOSE = 1e-13
 """Relative tolerance of δ in the search for the flywheel that gives it."""
 
 
-def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Computed[Array | None]:
+def _over_the_angle(
+    id: str, symbol: str, kind: str, text: str, **words: Any
+) -> Computed[Array | None]:
     """Return a column whose samples are those of `MachineTurning.samples_of`."""
     return value(symbol, kind, text, lambda state: state.course(id), **words)
 
@@ -66,10 +68,17 @@ class TurningState(AtAngles):
         extremes=("flywheel",),
     )
     T_inertia = _over_the_angle(
-        "T_inertia", "T_b", "force", "Part of T due to the inertia forces, at uniform rotation (Tolle)"
+        "T_inertia",
+        "T_b",
+        "force",
+        "Part of T due to the inertia forces, at uniform rotation (Tolle)",
     )
-    M = _over_the_angle("M", "M", "torque", "Torque on the shaft", called="torque", extremes=("flywheel",))
-    E = _over_the_angle("E", "E", "energy", "Excess work: work of M minus work of the resistance since angle 0")
+    M = _over_the_angle(
+        "M", "M", "torque", "Torque on the shaft", called="torque", extremes=("flywheel",)
+    )
+    E = _over_the_angle(
+        "E", "E", "energy", "Excess work: work of M minus work of the resistance since angle 0"
+    )
     omega = _over_the_angle("omega", "ω", "angular_velocity", "Angular velocity of the shaft")
     alpha = _over_the_angle(
         "alpha",
@@ -81,7 +90,9 @@ class TurningState(AtAngles):
     )
     M_coupling = _over_the_angle("M_coupling", "M_K", "torque", "Torque in the elastic coupling")
 
-    def __init__(self, turning: MachineTurning, phi: Array, within: Array, machine: Indices | None = None) -> None:
+    def __init__(
+        self, turning: MachineTurning, phi: Array, within: Array, machine: Indices | None = None
+    ) -> None:
         """Take the results, the angles, and the machine of each (n,), where there are many."""
         self._turning, self.phi, self.within, self._machine = turning, phi, within, machine
 
@@ -92,7 +103,11 @@ class TurningState(AtAngles):
     def course(self, id: str) -> Array | None:
         """Return a quantity of `MachineTurning.samples_of` at the angles, (n,); None for what is left out."""
         found = self._turning.samples_of(id)
-        return None if found is None else self._turning.effort.at(*found, self.phi, self.within, self._machine)
+        return (
+            None
+            if found is None
+            else self._turning.effort.at(*found, self.phi, self.within, self._machine)
+        )
 
 
 class MachineTurning(Results):
@@ -112,7 +127,9 @@ class MachineTurning(Results):
         self.crank = self.machine.cylinders[0].mechanism.crank if self.machine.cylinders else None
         self._extremes: dict[str, Extremes | None] = {}
         wheel = self.machine.flywheel
-        self._given, self._wanted, self.rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
+        self._given, self._wanted, self.rim = (
+            (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
+        )
         self.law = SpeedLaw.of(effort)
         if effort.count is not None:
             _ = self.natural_order  # refuses machines of a batch before any result is read
@@ -133,7 +150,11 @@ class MachineTurning(Results):
             case "T":
                 return self._at_crank(effort.M)
             case "T_inertia":
-                return self._at_crank(effort.sampled(effort.inertia_terms)) if effort.inertia_terms else None
+                return (
+                    self._at_crank(effort.sampled(effort.inertia_terms))
+                    if effort.inertia_terms
+                    else None
+                )
             case "E":
                 return effort.pieces, self.excess.E
             case "M_load":
@@ -160,9 +181,13 @@ class MachineTurning(Results):
         def sample(pieces: Pieces) -> Array:
             shape, machine = pieces.degrees.shape, np.tile(pieces.machine, len(pieces.degrees))
             within = np.broadcast_to(pieces.middle, shape).ravel()
-            return row.of(self.state(self, pieces.degrees.ravel(), within, machine)).reshape(1, *shape)
+            return row.of(self.state(self, pieces.degrees.ravel(), within, machine)).reshape(
+                1, *shape
+            )
 
-        pieces, (values,) = refined(self.effort.pieces if self.speed is None else self.speed.pieces, sample)
+        pieces, (values,) = refined(
+            self.effort.pieces if self.speed is None else self.speed.pieces, sample
+        )
         return pieces, values
 
     @property
@@ -180,7 +205,9 @@ class MachineTurning(Results):
         if column not in self._extremes:
             found = self.samples_of(column)
             result = self.speed.result if column == "alpha" and self.speed else self.effort.result
-            self._extremes[column] = None if found is None else found[0].extremes(found[1][None]).each(result)[0]
+            self._extremes[column] = (
+                None if found is None else found[0].extremes(found[1][None]).each(result)[0]
+            )
         return self._extremes[column]
 
     # turning effort
@@ -217,7 +244,7 @@ class MachineTurning(Results):
         lambda one: one.M_mean * one.omega if one.turns and one.knows_mean else None,
     )
 
-    _searched = Searched()
+    _searched = ExtremesOfColumns()
 
     @property
     def knows_mean(self) -> bool:
@@ -249,10 +276,16 @@ class MachineTurning(Results):
         listed=True,
     )
     E_max = value(
-        "E_max", "energy", "Largest excess work since angle 0", lambda one: one.summits and one.summits.largest
+        "E_max",
+        "energy",
+        "Largest excess work since angle 0",
+        lambda one: one.summits and one.summits.largest,
     )
     E_min = value(
-        "E_min", "energy", "Smallest excess work since angle 0", lambda one: one.summits and one.summits.smallest
+        "E_min",
+        "energy",
+        "Smallest excess work since angle 0",
+        lambda one: one.summits and one.summits.smallest,
     )
     dE = value(
         "ΔE",
@@ -335,14 +368,18 @@ class MachineTurning(Results):
     @property
     def is_the_needed(self) -> bool:
         """Whether J is J_δ: no other moment of inertia is given."""
-        return self._given is None or (self.J_needed is not None and every(self.J_needed == self._given))
+        return self._given is None or (
+            self.J_needed is not None and every(self.J_needed == self._given)
+        )
 
     def textbook_inertia(self) -> Number | None:
         """Return ΔE/(δ ω²) in kg m², less the inertia beyond a rigid coupling; None without a required δ or a speed."""
         if self._wanted is None or not self.turns:
             return None
         driven = self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
-        return self.effort.result(np.maximum(self.excess.dE / (self._wanted * self.omega**2) - driven, 0.0))
+        return self.effort.result(
+            np.maximum(self.excess.dE / (self._wanted * self.omega**2) - driven, 0.0)
+        )
 
     # speed line
 
@@ -401,7 +438,9 @@ class MachineTurning(Results):
         if coupling and not self._needs_no_inertia:
             own = np.asarray(flywheel + effort.pieces.mean(effort.J_moving))
             if effort.count is None and not own[0]:
-                raise UsageError("nothing ahead of the coupling has inertia: give 'flywheel' an inertia")
+                raise UsageError(
+                    "nothing ahead of the coupling has inertia: give 'flywheel' an inertia"
+                )
             if some(natural_order(coupling, own, self.omega) <= RIGID_ABOVE):
                 return ElasticCoupling(effort, own, self.law)
         whole = np.asarray(flywheel + (coupling.inertia if coupling else 0.0), dtype=float)
@@ -417,7 +456,9 @@ class MachineTurning(Results):
     def _stalled(self, flywheel: float, stop: Unsettled) -> NoSolutionError:
         """Return a message: at which angle the machine stalls, and the smallest flywheel found with which it runs."""
         elastic = self.natural_order is not None and not self.rigid
-        with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
+        with_this = (
+            f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
+        )
         message = f"{with_this} no periodic motion is found under this load"
         if stop.degrees is not None:
             message = f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy is used up"
@@ -461,9 +502,15 @@ class MachineTurning(Results):
     @key_value("n_e", "ratio")
     def natural_order(self) -> Number | None:
         """Natural frequency of the coupled masses, relative to the angular velocity."""
-        if self.machine.coupling is None or not self.turns or (self._given is None and self._wanted is None):
+        if (
+            self.machine.coupling is None
+            or not self.turns
+            or (self._given is None and self._wanted is None)
+        ):
             return None
-        needed = self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
+        needed = (
+            self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
+        )
         own = np.asarray(needed + self.effort.pieces.mean(self.effort.J_moving))
         if not every(own != 0):
             return None
@@ -506,7 +553,9 @@ class MachineTurning(Results):
         """Whether δ with the flywheel J_δ differs noticeably from the required one; of many machines, for any."""
         if self._wanted is None or self.delta_needed is None:
             return False
-        return some((self.delta_needed != 0) & (abs(self.delta_needed / self._wanted - 1) > _MISSED))
+        return some(
+            (self.delta_needed != 0) & (abs(self.delta_needed / self._wanted - 1) > _MISSED)
+        )
 
     @key_value("J_δ,ω", "inertia", after="rim_stress", heading="Flywheel")
     def J_exact(self) -> Any:

@@ -18,7 +18,15 @@ from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
 from kurbel.quantity import Heading, Quantity, value, values_for
 from kurbel.solver.cycle import SampledCylinder, reversals, shared
 from kurbel.solver.drive import Drive
-from kurbel.solver.figures import Results, Rows, Searched, column_rows, crank_angles, part, rows_of
+from kurbel.solver.figures import (
+    ExtremesOfColumns,
+    Results,
+    Rows,
+    column_rows,
+    crank_angles,
+    part,
+    result_rows,
+)
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
@@ -49,13 +57,15 @@ class Brake(Results):
     None where one has none.
     """
 
-    mean_pressure_brake = value("p_e", "pressure", "Mean effective pressure: brake work over the swept volume")
+    mean_pressure_brake = value(
+        "p_e", "pressure", "Mean effective pressure: brake work over the swept volume"
+    )
     mean_pressure_friction = value("p_r", "pressure", "Friction mean effective pressure, p_i − p_e")
     eta_m = value("η_m", "ratio", "Mechanical efficiency: brake power over indicated power")
 
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
         self.machine, self.cylinders = machine, cylinders
-        self.indicated: Any = _sum_of_all([one.power for one in cylinders])
+        self.indicated: Any = _sum_of_all([cylinder.power for cylinder in cylinders])
 
     @cached_property
     def answers(self) -> dict[str, object]:
@@ -64,8 +74,12 @@ class Brake(Results):
         if power is None:
             return found
         # each cylinder sweeps once in a turn, in a cycle of two turns in every other one
-        gases = [(one.drive.own_gas, one.drive.revolutions) for one in self.cylinders]
-        swept = _sum_of_all([None if gas is None else gas.swept_volume / turns for gas, turns in gases])
+        gases = [
+            (cylinder.drive.own_gas, cylinder.drive.revolutions) for cylinder in self.cylinders
+        ]
+        swept = _sum_of_all(
+            [None if gas is None else gas.swept_volume / turns for gas, turns in gases]
+        )
         rate = None if swept is None or self.machine.speed is None else swept * self.machine.speed
         if rate is not None and not every(rate == 0):
             found["mean_pressure_brake"] = brake = power / rate
@@ -90,7 +104,9 @@ class PistonWork(Results):
     """Work and power of one of several pistons of a rod."""
 
     command = "forces"
-    work = value("A_i", "energy", "Indicated work of the piston per cycle", lambda one: one.gas.work)
+    work = value(
+        "A_i", "energy", "Indicated work of the piston per cycle", lambda one: one.gas.work
+    )
     power = value(
         "N_i",
         "power",
@@ -98,7 +114,10 @@ class PistonWork(Results):
         lambda one: None if one.rate is None else one.gas.work * one.rate,
     )
     mean_pressure = value(
-        "p_i", "pressure", "Mean indicated pressure of the piston", lambda one: one.gas.work / one.gas.swept_volume
+        "p_i",
+        "pressure",
+        "Mean indicated pressure of the piston",
+        lambda one: one.gas.work / one.gas.swept_volume,
     )
 
     def __init__(self, name: str, gas: PistonGas, rate: Number | None) -> None:
@@ -117,7 +136,11 @@ class CylinderForces(SampledCylinder, Results):
     twin: CylinderForces | None
 
     def __init__(
-        self, machine: Machine, cylinder: Cylinder, count: int | None = None, twin: CylinderForces | None = None
+        self,
+        machine: Machine,
+        cylinder: Cylinder,
+        count: int | None = None,
+        twin: CylinderForces | None = None,
     ) -> None:
         self.drive, self.twin = Drive(machine, cylinder, count), twin
         self.mechanism: Mechanism = cylinder.mechanism
@@ -129,7 +152,9 @@ class CylinderForces(SampledCylinder, Results):
         Where journals rub, each carries what its own throw carries.
         """
         friction = self.drive.pin_friction
-        by_throw = friction is not None and friction.line is not None and some(friction.journals != 0)
+        by_throw = (
+            friction is not None and friction.line is not None and some(friction.journals != 0)
+        )
         return not by_throw and work_alike(self.drive.cylinder, other)
 
     @property
@@ -155,7 +180,11 @@ class CylinderForces(SampledCylinder, Results):
     @part(Motion)
     def motion(self) -> Motion:
         """What the mechanism does."""
-        return self.twin.motion if self.twin else Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
+        return (
+            self.twin.motion
+            if self.twin
+            else Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
+        )
 
     @part(ValveGear)
     def valve_gear(self) -> ValveGear | None:
@@ -166,10 +195,12 @@ class CylinderForces(SampledCylinder, Results):
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")
     A_crank = value("A_C", "area", "Piston area at the crank end")
-    p_max = value("p_max", "pressure", "Largest gauge pressure on the cylinder's own piston", gauge=True)
+    p_max = value(
+        "p_max", "pressure", "Largest gauge pressure on the cylinder's own piston", gauge=True
+    )
     _forces = Heading("Forces")
     m = value("m", "mass", "Reciprocating mass, including its share of the connecting rod")
-    extremes = Searched()
+    extremes = ExtremesOfColumns()
     P_inertia_max = value(
         "P_b,max",
         "force",
@@ -222,7 +253,10 @@ class CylinderForces(SampledCylinder, Results):
     _work = Heading("Pressures and work")
     work = value("A_i", "energy", "Indicated work of all pistons of the rod per cycle")
     work_driving = value(
-        "A_i+", "energy", "Indicated work of the driving pistons per cycle", unless=lambda one: one.works_one_way
+        "A_i+",
+        "energy",
+        "Indicated work of the driving pistons per cycle",
+        unless=lambda one: one.works_one_way,
     )
     work_driven = value(
         "A_i−",
@@ -230,7 +264,9 @@ class CylinderForces(SampledCylinder, Results):
         "Indicated work of the driven pistons per cycle, negative",
         unless=lambda one: one.works_one_way,
     )
-    resistance_work = value("A_r", "energy", "Work per cycle of the resistance at the ram or rocker, negative")
+    resistance_work = value(
+        "A_r", "energy", "Work per cycle of the resistance at the ram or rocker, negative"
+    )
     power = value("N_i", "power", "Indicated power")
     mean_pressure = value("p_i", "pressure", "Mean indicated pressure of the cylinder's own piston")
 
@@ -243,10 +279,16 @@ class CylinderForces(SampledCylinder, Results):
     def brake(self) -> Brake | None:
         """Key values of the brake, where this is the only cylinder."""
         machine = self.drive.machine
-        return Brake(machine, (self,)) if len(machine.cylinders) == 1 and machine.brake_power is not None else None
+        return (
+            Brake(machine, (self,))
+            if len(machine.cylinders) == 1 and machine.brake_power is not None
+            else None
+        )
 
     work_sensitivity = value(  # an indicator's dead centre is seldom known better
-        "dA_i/A_i", "ratio", "Relative change of the indicated work for a shift of the traces by +0.1 deg"
+        "dA_i/A_i",
+        "ratio",
+        "Relative change of the indicated work for a shift of the traces by +0.1 deg",
     )
     _resistance = Heading("Forces")
     W = value(
@@ -256,7 +298,8 @@ class CylinderForces(SampledCylinder, Results):
         lambda forces: (
             None
             if forces.work_left is None
-            else forces.work_left / (2 * math.pi * forces.mechanism.crank * forces.drive.revolutions)
+            else forces.work_left
+            / (2 * math.pi * forces.mechanism.crank * forces.drive.revolutions)
         ),
     )
     _friction = Heading("Friction")
@@ -265,18 +308,27 @@ class CylinderForces(SampledCylinder, Results):
         "energy",
         "Work lost by friction per cycle",
         lambda forces: (
-            total(*forces.friction_works.values()) if forces.drive.has_force and forces.friction_works else None
+            total(*forces.friction_works.values())
+            if forces.drive.has_force and forces.friction_works
+            else None
         ),
     )
     loss_of_sliding = values_for(
-        SLIDING, "loss_*", "e_*", "ratio", "Work lost * over that of the driving pistons", of=share_of_driving
+        SLIDING,
+        "loss_*",
+        "e_*",
+        "ratio",
+        "Work lost * over that of the driving pistons",
+        of=share_of_driving,
     )
     loss_crosshead_redtenbacher = value(
         "½ λ f",
         "ratio",
         "The same loss by Redtenbacher's mean over the rod angle (D 7)",
         lambda forces: (
-            forces.mechanism.lam * forces.drive.crosshead_friction / 2 if "crosshead" in forces.friction_works else None
+            forces.mechanism.lam * forces.drive.crosshead_friction / 2
+            if "crosshead" in forces.friction_works
+            else None
         ),
         plain="lam f/2",
         after="loss_crosshead",
@@ -290,7 +342,12 @@ class CylinderForces(SampledCylinder, Results):
         of=lambda forces, name: forces.friction_works.get(name),
     )
     pin_loss = values_for(
-        RUBBING, "loss_*", "e_*", "ratio", "Work lost * over that of the driving pistons", of=share_of_driving
+        RUBBING,
+        "loss_*",
+        "e_*",
+        "ratio",
+        "Work lost * over that of the driving pistons",
+        of=share_of_driving,
     )
     _checks = Heading("Checks")
     energy_residual = value(
@@ -338,7 +395,9 @@ class CylinderForces(SampledCylinder, Results):
                 found["power"] = work * speed / drive.revolutions
         traced = [gas.traced for gas in drive.gas if gas.traced]
         if own := math.fsum(work for work, _ in traced):
-            found["work_sensitivity"] = math.radians(0.1) * math.fsum(by_angle for _, by_angle in traced) / own
+            found["work_sensitivity"] = (
+                math.radians(0.1) * math.fsum(by_angle for _, by_angle in traced) / own
+            )
         return found
 
     @property
@@ -359,7 +418,12 @@ class CylinderForces(SampledCylinder, Results):
     @property
     def no_compressor(self) -> bool:
         """Whether rod loads are not shown: for engines, also motored four-stroke ones, and without a connecting rod."""
-        return self.work is None or self.work >= 0 or self.drive.revolutions > 1 or not self.mechanism.has_rod
+        return (
+            self.work is None
+            or self.work >= 0
+            or self.drive.revolutions > 1
+            or not self.mechanism.has_rod
+        )
 
     # extremes of the columns
 
@@ -367,7 +431,7 @@ class CylinderForces(SampledCylinder, Results):
     def inertia_extremes(self) -> list[Extreme]:
         """The inertia forces in N where the acceleration is largest and smallest; none without masses or speed."""
         turns = (self.motion.b_max, self.motion.b_min) if self.drive.has_inertia else ()
-        return [Extreme(-self.drive.mass * one.value, one.degrees) for one in turns if one]
+        return [Extreme(-self.drive.mass * turn.value, turn.degrees) for turn in turns if turn]
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
@@ -429,7 +493,9 @@ class CylinderForces(SampledCylinder, Results):
         lost, speed = self.friction_works.get("crosshead"), drive.machine.speed
         if drive.guide_area is not None and lost is not None:
             if drive.rubs and some(lost != 0):
-                found["p_guide_mean"] = lost / (drive.crosshead_friction * drive.guide_area * drive.path)
+                found["p_guide_mean"] = lost / (
+                    drive.crosshead_friction * drive.guide_area * drive.path
+                )
             if speed is not None:
                 found["wear_mean"] = lost * speed / drive.revolutions
         return found
@@ -442,7 +508,7 @@ class CylinderForces(SampledCylinder, Results):
         if not self.drive.has_force:
             return None
         terms = (self.work, self.friction_work, self.resistance_work)
-        work, lost, resisted = (0.0 if one is None else one for one in terms)
+        work, lost, resisted = (0.0 if term is None else term for term in terms)
         return total(work, -lost, resisted)
 
     @shared
@@ -459,7 +525,11 @@ class CylinderForces(SampledCylinder, Results):
             return self.result(self.pieces.integral(self.pieces.filled(values)))
 
         if friction.crosshead is not None and drive.has_force:
-            drag = self.samples.crosshead_drag * (self.samples.slope * self.samples.direction) if drive.rubs else None
+            drag = (
+                self.samples.crosshead_drag * (self.samples.slope * self.samples.direction)
+                if drive.rubs
+                else None
+            )
             found["crosshead"] = 0.0 if drag is None else over_cycle(drag)
         if friction.rings is not None:
             found["rings"] = drive.ring_force * drive.path
@@ -473,7 +543,9 @@ class CylinderForces(SampledCylinder, Results):
             found |= {name: over_cycle(self.samples.losses.get(name, 0.0)) for name in given}
         if friction.guides is not None and drive.has_force:
             samples = self.samples
-            found["guides"] = over_cycle(samples.drag_of_guides * (samples.slope * samples.direction))
+            found["guides"] = over_cycle(
+                samples.drag_of_guides * (samples.slope * samples.direction)
+            )
         return found
 
     def energy_balance(self) -> Number | None:
@@ -484,15 +556,26 @@ class CylinderForces(SampledCylinder, Results):
         """
         if self.work_left is None:
             return None
-        turnover, whole = (self.result(self.pieces.integral(one)) for one in (np.abs(self.samples.M), self.samples.M))
-        return where(turnover > 0, (whole - self.work_left) / where(turnover > 0, turnover, 1.0), 0.0)
+        turnover, whole = (
+            self.result(self.pieces.integral(one))
+            for one in (np.abs(self.samples.M), self.samples.M)
+        )
+        return where(
+            turnover > 0, (whole - self.work_left) / where(turnover > 0, turnover, 1.0), 0.0
+        )
 
 
 @cache
-def _rows(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: bool, absolute: bool) -> Rows:
+def _rows(
+    offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: bool, absolute: bool
+) -> Rows:
     """Return the rows of cylinders with these quantities of mechanisms: of a ram without piston, or absolute."""
-    known = rows_of(CylinderForces, offers, key_offers)
-    return known.changed(Quantity.of_ram if of_ram else Quantity.absolute) if of_ram or absolute else known
+    known = result_rows(CylinderForces, offers, key_offers)
+    return (
+        known.changed(Quantity.of_ram if of_ram else Quantity.absolute)
+        if of_ram or absolute
+        else known
+    )
 
 
 def _sum_of_all(values: Sequence[Any]) -> Any:

@@ -15,5 +15,7 @@ def holding_force(incline: float, friction: float, direction: float = 0.0) -> fl
     alpha, beta = CrankAngle.of(float(incline)), CrankAngle.of(float(direction))
     below = beta.cos + friction * beta.sin
     if below <= 0:
-        raise NoSolutionError(f"the body locks itself: no force at {direction:g} deg moves it up {incline:g} deg")
+        raise NoSolutionError(
+            f"the body locks itself: no force at {direction:g} deg moves it up {incline:g} deg"
+        )
     return float((alpha.sin + friction * alpha.cos) / below)

@@ -75,7 +75,10 @@ class Process:
             grown = float(growth(z, next_z - z, self.clearance))
             u = (1 - exponent) * grown
             mean = math.expm1(u) / u if u else 1.0
-            curved += [(p + self.lift) * (z + self.clearance) * grown * mean, -self.lift * (next_z - z)]
+            curved += [
+                (p + self.lift) * (z + self.clearance) * grown * mean,
+                -self.lift * (next_z - z),
+            ]
         return math.fsum((math.ldexp(straight, -2 * _BITS - 1), *curved))
 
 
@@ -87,21 +90,26 @@ def growth(z: Number, distance: Number, clearance: Number) -> Number:
     >>> round(float(growth(1.0, -1.0, 1.0)), 9)
     -0.693147181
     """
-    return np.where(distance < 0, -1.0, 1.0) * np.log1p(np.abs(distance) / (np.minimum(z, z + distance) + clearance))
+    return np.where(distance < 0, -1.0, 1.0) * np.log1p(
+        np.abs(distance) / (np.minimum(z, z + distance) + clearance)
+    )
 
 
-Line = tuple[int, float, float, float, float, float]
+ProcessLine = tuple[int, float, float, float, float, float]
 """One of the lines of a `Process`."""
 
 
 def process_in(
-    chamber: Card | Rectangle | IdealCard, lift: float = 0.0, cycle: float = 360.0, base: float = 0.0
+    chamber: Card | Rectangle | IdealCard,
+    lift: float = 0.0,
+    cycle: float = 360.0,
+    base: float = 0.0,
 ) -> Process:
     """Return the process of a card.
 
     lift: to be added to its pressures for absolute, base: to be subtracted for gauge pressures, in Pa; cycle: degrees.
     """
-    clearance, lines = math.inf, list[Line]()
+    clearance, lines = math.inf, list[ProcessLine]()
     if isinstance(chamber, Card):
         curved = chamber.interpolate != "linear" and chamber.clearance is not None
         clearance = chamber.clearance if curved and chamber.clearance is not None else math.inf
@@ -109,18 +117,26 @@ def process_in(
             for (z, p), (next_z, next_p) in pairwise(zip(line.fractions, line.pressures)):
                 exponent = 0.0
                 if curved and next_z != z:
-                    exponent = math.log((p + lift) / (next_p + lift)) / float(growth(z, next_z - z, clearance))
+                    exponent = math.log((p + lift) / (next_p + lift)) / float(
+                        growth(z, next_z - z, clearance)
+                    )
                 lines.append((stroke, z, p, next_z, next_p, exponent))
-    elif isinstance(chamber, Rectangle):  # the mean pressure is that of the stroke that drives, or is driven
+    elif isinstance(
+        chamber, Rectangle
+    ):  # the mean pressure is that of the stroke that drives, or is driven
         level = base if chamber.level is None else chamber.level
         above = {"expansion": max(chamber.mean, 0.0), "compression": max(-chamber.mean, 0.0)}
         names = next(names for word, names in STROKES.items() if 360.0 * CYCLES[word] == cycle)
         for stroke, name in enumerate(names):
             pressure = level + above.get(name, 0.0)
-            lines.append((stroke, float(stroke % 2), pressure, float(1 - stroke % 2), pressure, 0.0))
+            lines.append(
+                (stroke, float(stroke % 2), pressure, float(1 - stroke % 2), pressure, 0.0)
+            )
     else:
         clearance, lines = chamber.clearance, _ideal(chamber, lift, four_stroke=cycle == 720.0)
-        if not isinstance(chamber, Compressor) and chamber.diagram_factor != 1:  # p V^n = const about another vacuum
+        if (
+            not isinstance(chamber, Compressor) and chamber.diagram_factor != 1
+        ):  # p V^n = const about another vacuum
             factor, back = chamber.diagram_factor, chamber.back_pressure
             lift = factor * lift - (1 - factor) * back
             lines = [
@@ -130,12 +146,12 @@ def process_in(
     return Process(np.array([line for line in lines if line[3] != line[1]]), lift, clearance)
 
 
-def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
+def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[ProcessLine]:
     """Return the lines of an ideal card; those of an engine with exhaust and intake in four strokes.
 
     lift: pressure in Pa to be added for absolute pressures.
     """
-    clearance, lines = card.clearance, list[Line]()
+    clearance, lines = card.clearance, list[ProcessLine]()
 
     def run(stroke: int, z: float, p: float, next_z: float, exponent: float = 0.0) -> float:
         """Draw a line of constant pressure, or along p V^n = const, and return the pressure at its end."""
@@ -156,8 +172,13 @@ def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
     elif isinstance(card, Compressor) and card.unloaded:
         run(0, 0.0, card.suction, 1.0)
         run(1, 1.0, card.suction, 0.0)
-    elif isinstance(card, Compressor):  # expansion of the clearance gas, suction; compression, delivery
-        ratio, expansion = math.log((card.delivery + lift) / (card.suction + lift)), card.of_expansion
+    elif isinstance(
+        card, Compressor
+    ):  # expansion of the clearance gas, suction; compression, delivery
+        ratio, expansion = (
+            math.log((card.delivery + lift) / (card.suction + lift)),
+            card.of_expansion,
+        )
         fills = clearance * math.expm1(ratio / expansion)
         empties = 1.0 + (1.0 + clearance) * math.expm1(-ratio / card.exponent)
         lines.append((0, 0.0, card.delivery, fills, card.suction, expansion))
@@ -189,10 +210,18 @@ class CardPressure:
     """
 
     def __init__(
-        self, chamber: Card | Rectangle | IdealCard, setting: Setting, count: int | None, mirrored: CardPressure | None
+        self,
+        chamber: Card | Rectangle | IdealCard,
+        setting: Setting,
+        count: int | None,
+        mirrored: CardPressure | None,
     ) -> None:
         self.setting, self._count, cycle = setting, count, setting.cycle
-        known = (mirrored._processes, mirrored._which) if mirrored else _processes(chamber, setting, count)
+        known = (
+            (mirrored._processes, mirrored._which)
+            if mirrored
+            else _processes(chamber, setting, count)
+        )
         self._processes: list[Process] = known[0]
         self._which: Indices = known[1]
 
@@ -201,7 +230,10 @@ class CardPressure:
         own = self._which[:1] if alike else self._which
         self._machine, rows = _over_the_angle(self._processes, own, setting, alike)
         self._begins, self._ends, z, p, next_z, self._next_p, exponent = rows
-        self._p, self._rows = p, np.stack((z, p, next_z, exponent, (self._next_p - p) / (next_z - z), *rows[:2]))
+        self._p, self._rows = (
+            p,
+            np.stack((z, p, next_z, exponent, (self._next_p - p) / (next_z - z), *rows[:2])),
+        )
         self._keys = self._machine * (2 * cycle) + self._begins
         self._first = np.searchsorted(self._machine, np.arange(len(own)))
         self._straight = not exponent.any()
@@ -209,13 +241,14 @@ class CardPressure:
         self.steep = bool((np.abs(next_z - z) < _STEEP).any())
         machines = count if alike and count else 1
         self.starts = Angles(
-            np.repeat(np.arange(machines), len(z)) if alike else self._machine, np.tile(self._begins, machines)
+            np.repeat(np.arange(machines), len(z)) if alike else self._machine,
+            np.tile(self._begins, machines),
         )
 
     @property
     def area(self) -> Number:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
-        areas = np.array([one.area for one in self._processes])
+        areas = np.array([process.area for process in self._processes])
         return float(areas[0]) if len(areas) == 1 else areas[self._which]
 
     @cached_property
@@ -224,13 +257,20 @@ class CardPressure:
         best = np.maximum.reduceat(np.maximum(self._p, self._next_p), self._first)
         until = np.where(self._ends > self._begins, self._ends, self._ends + self.setting.cycle)
         level = best[self._machine]
-        angles = np.where(self._p == level, self._begins, np.where(self._next_p == level, until, np.inf))
+        angles = np.where(
+            self._p == level, self._begins, np.where(self._next_p == level, until, np.inf)
+        )
         first = np.minimum.reduceat(angles, self._first)
         whole = np.broadcast_arrays(best - self.setting.base, first, np.empty(self._count or 1))
         return Extreme(*(result(one, self._count) for one in whole[:2]))
 
     def at(
-        self, z: Array, degrees: Array, within: Array, machine: Indices | None, remaining: Array | None = None
+        self,
+        z: Array,
+        degrees: Array,
+        within: Array,
+        machine: Indices | None,
+        remaining: Array | None = None,
     ) -> Array:
         """Return the gauge pressure in Pa where z of the stroke is passed, on the segments that hold `within` (n,).
 
@@ -243,7 +283,9 @@ class CardPressure:
         turned = within_cycle(within, setting.cycle)
         row = np.searchsorted(self._keys, own * (2 * setting.cycle) + turned, side="right") - 1
         last = np.append(self._first[1:], len(self._keys))[own] - 1
-        begin, p, next_z, exponent, rise, begins, ends = self._rows[:, np.where(row < self._first[own], last, row)]
+        begin, p, next_z, exponent, rise, begins, ends = self._rows[
+            :, np.where(row < self._first[own], last, row)
+        ]
         base = spread(setting.base, machine)
         if self._level:
             return np.asarray(p - base)
@@ -261,10 +303,14 @@ class CardPressure:
         straight: Array = (p - base) + rise * distance
         if self._straight:
             return straight
-        known = np.array([(one.lift, one.clearance) for one in self._processes])
-        lift, clearance = known[0] if len(known) == 1 or machine is None else known[self._which[machine]].T
+        known = np.array([(process.lift, process.clearance) for process in self._processes])
+        lift, clearance = (
+            known[0] if len(known) == 1 or machine is None else known[self._which[machine]].T
+        )
         curved = exponent != 0
-        clearance = np.where(curved, clearance, 1.0)  # what is straight may begin without any volume
+        clearance = np.where(
+            curved, clearance, 1.0
+        )  # what is straight may begin without any volume
         power = (p + lift) * np.exp(growth(begin, distance, clearance) * -exponent)
         return np.where(curved, power - lift - base, straight)
 
@@ -279,32 +325,43 @@ def _processes(
         each = [changed(chamber, lambda numbers, at=at: numbers[at].item()) for at in which]  # type: ignore[misc]
     numbers = np.stack(np.broadcast_arrays(which.astype(float), setting.lift, setting.base))
     made, own = np.unique(numbers, axis=1, return_inverse=True)
-    return [process_in(each[int(n)], lift, setting.cycle, base) for n, lift, base in made.T.tolist()], own.ravel()
+    return [
+        process_in(each[int(n)], lift, setting.cycle, base) for n, lift, base in made.T.tolist()
+    ], own.ravel()
 
 
-def _over_the_angle(processes: list[Process], which: Indices, setting: Setting, alike: bool) -> tuple[Indices, Array]:
+def _over_the_angle(
+    processes: list[Process], which: Indices, setting: Setting, alike: bool
+) -> tuple[Indices, Array]:
     """Return whose each line is, and in the order of the angle begin and end in degrees, z, p, z′, p′, n, (7, n).
 
     which: the process of each machine. Those over no width, being jumps, are left out. alike: the lines are at the same
     angles in all machines, and are returned for one. One process of many machines is elsewhere in each.
     """
-    lengths = np.array([len(one.lines) for one in processes])
+    lengths = np.array([len(process.lines) for process in processes])
     machine = np.repeat(np.arange(len(which)), lengths[which])
     shift = (np.cumsum(lengths) - lengths)[which] - (np.cumsum(lengths[which]) - lengths[which])
-    lines = np.concatenate([one.lines for one in processes])[np.arange(len(machine)) + shift[machine]]
+    lines = np.concatenate([process.lines for process in processes])[
+        np.arange(len(machine)) + shift[machine]
+    ]
     stroke, z = lines[:, 0].astype(np.intp), lines[:, 1]
 
     # the crank end begins its process at the outer dead centre, one stroke later
     number = stroke + (0 if setting.head_end else 1)
     mechanism = setting.mechanism if alike else taken(setting.mechanism, machine)
-    begin, end = (360.0 * (k // 2) + np.where(k % 2 == 0, *mechanism.dead_centres()) for k in (number, number + 1))
+    begin, end = (
+        360.0 * (k // 2) + np.where(k % 2 == 0, *mechanism.dead_centres())
+        for k in (number, number + 1)
+    )
     edges, along = begin.copy(), z if setting.head_end else 1 - z
     later = np.append(False, (stroke[1:] == stroke[:-1]) & (machine[1:] == machine[:-1]))
     for outstroke in (True, False):
         inside = np.flatnonzero(later & ((number % 2 == 0) == outstroke))
         if len(inside):
             own = mechanism if alike else taken(setting.mechanism, machine[inside])
-            edges[inside] = 360.0 * (number[inside] // 2) + own.crank_angles_at(along[inside] * own.stroke, outstroke)
+            edges[inside] = 360.0 * (number[inside] // 2) + own.crank_angles_at(
+                along[inside] * own.stroke, outstroke
+            )
     ends = np.where(np.append(later[1:], False), np.append(edges[1:], 0.0), end)
 
     # next to the other end of the stroke rounding may turn two angles round
@@ -336,15 +393,25 @@ class PistonGas:
     """
 
     def __init__(
-        self, piston: Piston, mechanism: Mechanism, cycle: float, ambient: float, repeats: int, count: int | None
+        self,
+        piston: Piston,
+        mechanism: Mechanism,
+        cycle: float,
+        ambient: float,
+        repeats: int,
+        count: int | None,
     ) -> None:
         indicator = piston.indicator
         assert indicator is not None
         ratio, self.turned = piston.lever_ratio, some(piston.lever_ratio < 0)
         if self.turned and some(ratio > 0):
-            raise UsageError("pistons that move with the crosshead and against it are computed apart")
+            raise UsageError(
+                "pistons that move with the crosshead and against it are computed apart"
+            )
         at_head = Setting(mechanism, cycle, not self.turned, ambient, indicator.absolute)
-        at_crank = at_head._replace(head_end=self.turned, mirrored=indicator.crank_end is indicator.head_end)
+        at_crank = at_head._replace(
+            head_end=self.turned, mirrored=indicator.crank_end is indicator.head_end
+        )
         self.piston, self.stroke, self.repeats = piston, mechanism.stroke, repeats
         self.absolute, self.base = indicator.absolute, at_head.base
         self.head: Pressure | None = None
@@ -359,16 +426,25 @@ class PistonGas:
             same = self.head if at_crank.mirrored and isinstance(self.head, CardPressure) else None
             self.crank = CardPressure(indicator.crank_end, at_crank, count, same)
 
-        self.areas: tuple[Number, Number] = (piston.head_area * abs(ratio), piston.crank_area * abs(ratio))
+        self.areas: tuple[Number, Number] = (
+            piston.head_area * abs(ratio),
+            piston.crank_area * abs(ratio),
+        )
         both = zip((self.head, self.crank), self.areas)
         self.ends = [(end, area) for end, area in both if end is not None]
         self._traces = [(end, area) for end, area in self.ends if isinstance(end, TracePressure)]
         self.swept_volume: Number = sum(area for _, area in self.ends) * self.stroke
         turns = cycle * np.arange(repeats)
-        self.starts = [Angles(one.starts.machine, one.starts.degrees + turn) for turn in turns for one, _ in self.ends]
+        self.starts = [
+            Angles(one.starts.machine, one.starts.degrees + turn)
+            for turn in turns
+            for one, _ in self.ends
+        ]
         chambers = zip((indicator.head_end, indicator.crank_end), self.areas)
         clearances = [(getattr(chamber, "clearance", None), area) for chamber, area in chambers]
-        self.clearance_volumes = [0.0 if one is None else one * area * self.stroke for one, area in clearances]
+        self.clearance_volumes = [
+            0.0 if one is None else one * area * self.stroke for one, area in clearances
+        ]
 
     @cached_property
     def works(self) -> tuple[Number, ...]:
@@ -385,7 +461,11 @@ class PistonGas:
         """Indicated work in J of the ends that have a trace, and its change per radian of angle; None without."""
         distance = self.stroke * self.repeats
         works = [(area * end.area, area * end.area_by_angle) for end, area in self._traces]
-        return (distance * sum(one[0] for one in works), distance * sum(one[1] for one in works)) if works else None
+        return (
+            (distance * sum(work[0] for work in works), distance * sum(work[1] for work in works))
+            if works
+            else None
+        )
 
     @property
     def noise(self) -> float:

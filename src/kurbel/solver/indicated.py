@@ -41,16 +41,28 @@ class Indicated(Results):
     mean_pressure_gross = value("p_i,g", "pressure", "Gross part of p_i: compression and expansion")
     mean_pressure_exchange = value("p_i,w", "pressure", "Pumping part of p_i: exhaust and intake")
     V_clearance = value("V_c", "volume", "Clearance volume of the head-end chamber")
-    n_compression = value("n_c", "ratio", "Exponent of p V^n over the compression, 90 to 40 deg before its end")
-    n_expansion = value("n_d", "ratio", "Exponent of p V^n over the expansion, 60 to 100 deg after its start")
+    n_compression = value(
+        "n_c", "ratio", "Exponent of p V^n over the compression, 90 to 40 deg before its end"
+    )
+    n_expansion = value(
+        "n_d", "ratio", "Exponent of p V^n over the expansion, 60 to 100 deg after its start"
+    )
     p_rise_max = value("dp/dφ_max", "pressure_rise", "Largest rate of pressure rise, per degree")
     cycles_measured = value("Z", "ratio", "Number of measured cycles averaged for the forces")
     mean_pressure_std = value("s_p_i", "pressure", "Standard deviation of p_i over the cycles")
-    mean_pressure_cov = value("COV", "ratio", "Coefficient of variation of p_i: standard deviation over mean")
-    p_max_mean = value("p_max,m", "pressure", "Mean of the largest gauge pressures of the cycles", gauge=True)
-    p_max_std = value("s_p_max", "pressure", "Standard deviation of the largest pressures of the cycles")
+    mean_pressure_cov = value(
+        "COV", "ratio", "Coefficient of variation of p_i: standard deviation over mean"
+    )
+    p_max_mean = value(
+        "p_max,m", "pressure", "Mean of the largest gauge pressures of the cycles", gauge=True
+    )
+    p_max_std = value(
+        "s_p_max", "pressure", "Standard deviation of the largest pressures of the cycles"
+    )
     p_max_most = value("p_max,Z", "pressure", "Largest gauge pressure of any cycle", gauge=True)
-    cycle_worst = value("Z_min", "ratio", "Number of the cycle with the smallest p_i, counted from 1")
+    cycle_worst = value(
+        "Z_min", "ratio", "Number of the cycle with the smallest p_i, counted from 1"
+    )
 
     def __init__(self, gas: PistonGas) -> None:
         self.gas = gas
@@ -66,16 +78,23 @@ class Indicated(Results):
         if not self._traces:
             return found
 
-        parts = [(one.exchange_weights, self._share(one) * one.pressures) for one in self._traces]
+        parts = [
+            (trace.exchange_weights, self._share(trace) * trace.pressures) for trace in self._traces
+        ]
         exchange = [weights * pressures for weights, pressures in parts if weights is not None]
         if exchange:
             terms = np.concatenate(exchange)
-            found["mean_pressure_exchange"] = lost = float(unless_cancelled(terms.sum(), np.abs(terms).sum()))
+            found["mean_pressure_exchange"] = lost = float(
+                unless_cancelled(terms.sum(), np.abs(terms).sum())
+            )
             found["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - lost
-        found["p_rise_max"] = max(one.steepest for one in self._traces)
+        found["p_rise_max"] = max(trace.steepest for trace in self._traces)
         if len(self._traces) == 1:
             (one,) = self._traces
-            after, absolute = one.setting.from_dead_centre(one.trace), one.pressures + one.setting.lift
+            after, absolute = (
+                one.setting.from_dead_centre(one.trace),
+                one.pressures + one.setting.lift,
+            )
             for id, stretch in (("n_compression", COMPRESSION), ("n_expansion", EXPANSION)):
                 fitted = exponent(one.setting, one.trace.clearance, after, absolute, stretch)
                 found[id] = fitted.value if fitted else None
@@ -86,7 +105,11 @@ class Indicated(Results):
         if not self.cycles:
             return {}
         p_i, highest, at, _ = self.cycles
-        mean, deviation, top = abs(float(p_i.mean())), float(p_i.std(ddof=1)), int(np.argmax(highest))
+        mean, deviation, top = (
+            abs(float(p_i.mean())),
+            float(p_i.std(ddof=1)),
+            int(np.argmax(highest)),
+        )
         return {
             "cycles_measured": len(highest),
             "mean_pressure_std": deviation,
@@ -99,23 +122,31 @@ class Indicated(Results):
 
     def _share(self, pressure: TracePressure) -> float:
         """Return the share of a chamber in the swept volume."""
-        area = self.gas.piston.head_area if pressure.setting.head_end else self.gas.piston.crank_area
+        area = (
+            self.gas.piston.head_area if pressure.setting.head_end else self.gas.piston.crank_area
+        )
         return float(area * pressure.setting.mechanism.stroke / self.gas.swept_volume)
 
     @cached_property
     def cycles(self) -> Cycles | None:
         """The measured cycles, where there are several; an end with one cycle is the same in all."""
-        counts = {len(one.each) for one in self._traces} - {1}
+        counts = {len(trace.each) for trace in self._traces} - {1}
         if len(counts) != 1:
             return None
         (count,) = counts
         ends = []
         for one in self._traces:
             at, rises = np.mod(one.angles, one.setting.cycle), one.rises(one.each)[0]
-            own = (self._share(one) * (one.each @ one.weights), one.each.max(axis=1), at[one.each.argmax(axis=1)])
+            own = (
+                self._share(one) * (one.each @ one.weights),
+                one.each.max(axis=1),
+                at[one.each.argmax(axis=1)],
+            )
             ends.append([np.broadcast_to(values, count) for values in (*own, rises.max(axis=1))])
         p_i, p_max, phi_p_max, p_rise_max = np.array(ends).transpose(1, 0, 2)
-        traced = sum(self._share(one) * one.area for one in self._traces)
+        traced = sum(self._share(trace) * trace.area for trace in self._traces)
         others = self.gas.work / self.gas.swept_volume - traced  # of an end that has a card, say
         highest = np.argmax(p_max, axis=0), np.arange(count)
-        return Cycles(others + p_i.sum(axis=0), p_max[highest], phi_p_max[highest], p_rise_max.max(axis=0))
+        return Cycles(
+            others + p_i.sum(axis=0), p_max[highest], phi_p_max[highest], p_rise_max.max(axis=0)
+        )

@@ -18,7 +18,7 @@ from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces, Samples, refined
 from kurbel.quantity import Heading, value
-from kurbel.solver.figures import AtAngles, Results, Rows, result, rows_of
+from kurbel.solver.figures import AtAngles, Results, Rows, result, result_rows
 
 
 class MotionColumns(AtAngles):
@@ -58,13 +58,19 @@ class MotionColumns(AtAngles):
         "c",
         "velocity",
         "Velocity, positive toward the shaft; of a quick-return ram, positive on the working stroke",
-        lambda one: one.slope * one.omega if one.mechanism.slides and one.omega is not None else None,
+        lambda one: (
+            one.slope * one.omega if one.mechanism.slides and one.omega is not None else None
+        ),
     )
     b = value(  # a power would raise where the product is inf
         "b",
         "acceleration",
         "Acceleration, positive in the direction of positive velocity",
-        lambda one: one.curvature * (one.omega * one.omega) if one.mechanism.slides and one.omega is not None else None,
+        lambda one: (
+            one.curvature * (one.omega * one.omega)
+            if one.mechanism.slides and one.omega is not None
+            else None
+        ),
     )
     x_point = value(
         "x_Q",
@@ -92,7 +98,9 @@ class MotionColumns(AtAngles):
         "acceleration",
         "Magnitude of the acceleration of the point of the rod",
         lambda one: (
-            None if one.point is None or one.omega is None else one.point.acceleration * (one.omega * one.omega)
+            None
+            if one.point is None or one.omega is None
+            else one.point.acceleration * (one.omega * one.omega)
         ),
         on_request=("forces",),
     )
@@ -105,7 +113,12 @@ class MotionColumns(AtAngles):
         omega: Number | None,
         of_point: RodPoint | None = None,
     ) -> None:
-        self.mechanism, self.within, self.omega, self.phi = mechanism, within, omega, np.asarray(angle.degrees)
+        self.mechanism, self.within, self.omega, self.phi = (
+            mechanism,
+            within,
+            omega,
+            np.asarray(angle.degrees),
+        )
         self.rod_angle: Any = mechanism.rod_angle(angle)
         self.angle, self.posed = angle, angle._replace(rod=self.rod_angle)
         self._of_point = of_point
@@ -143,7 +156,11 @@ class MotionColumns(AtAngles):
     def point(self) -> PointMotion | None:
         """Motion of the point of the rod."""
         of = self._of_point
-        return self.mechanism.point_at(self.angle, of.from_crank_pin(self.mechanism), of.across) if of else None
+        return (
+            self.mechanism.point_at(self.angle, of.from_crank_pin(self.mechanism), of.across)
+            if of
+            else None
+        )
 
 
 def _equal_strokes(motion: Motion) -> bool:
@@ -165,8 +182,15 @@ class Motion(Results):
     stroke = value("s", "length", "Stroke")
     phi_idc = value("φ_i", "angle", "Crank angle of the inner dead centre")
     phi_odc = value("φ_o", "angle", "Crank angle of the outer dead centre")
-    phi_work = value("φ_w", "angle", "Crank rotation during the outstroke (working stroke)", unless=_equal_strokes)
-    phi_return = value("φ_r", "angle", "Crank rotation during the return stroke", unless=_equal_strokes)
+    phi_work = value(
+        "φ_w",
+        "angle",
+        "Crank rotation during the outstroke (working stroke)",
+        unless=_equal_strokes,
+    )
+    phi_return = value(
+        "φ_r", "angle", "Crank rotation during the return stroke", unless=_equal_strokes
+    )
     time_ratio = value(
         "t_w/t_r",
         "ratio",
@@ -177,9 +201,14 @@ class Motion(Results):
     v = value("v", "velocity", "Crank-pin speed")
     c_m = value("c_m", "velocity", "Mean piston speed 2 s n (R 290)")
     c_work_m = value(
-        "c_a,m", "velocity", "Mean speed of the outstroke (working stroke, R p. 615)", unless=_equal_strokes
+        "c_a,m",
+        "velocity",
+        "Mean speed of the outstroke (working stroke, R p. 615)",
+        unless=_equal_strokes,
     )
-    c_return_m = value("c_r,m", "velocity", "Mean speed of the return stroke (R p. 615)", unless=_equal_strokes)
+    c_return_m = value(
+        "c_r,m", "velocity", "Mean speed of the return stroke (R p. 615)", unless=_equal_strokes
+    )
     c_max = value("c_max", "velocity", "Largest velocity on the outstroke")
     c_min = value(
         "c_min",
@@ -191,7 +220,9 @@ class Motion(Results):
     c_return_max = value("c_r,max", "velocity", "Largest speed of the return stroke (R 305)")
     b_max = value("b_max", "acceleration", "Largest acceleration")
     b_min = value("b_min", "acceleration", "Minimum acceleration (peak deceleration)")
-    phi_b_zero = value("φ_b=0", "angle", "Crank angles at which the acceleration passes zero", listed=True)
+    phi_b_zero = value(
+        "φ_b=0", "angle", "Crank angles at which the acceleration passes zero", listed=True
+    )
     phi_b_zero_book = value(
         "φ_b0=0",
         "angle",
@@ -209,7 +240,7 @@ class Motion(Results):
     @property
     def rows(self) -> Rows:
         """The rows that the motion of this mechanism may have."""
-        return rows_of(Motion, self.mechanism.OFFERS, self.mechanism.KEY_OFFERS)
+        return result_rows(Motion, self.mechanism.OFFERS, self.mechanism.KEY_OFFERS)
 
     @cached_property
     def answers(self) -> dict[str, object]:
@@ -217,22 +248,35 @@ class Motion(Results):
         one, found = self.mechanism, dict[str, object](phi_work=self.mechanism.phi_work)
         found["phi_return"] = one.phi_return
         if one.has_dead_centres:
-            centres = (where(end < 0, end + 360.0, end) for end in one.dead_centres())  # from −360° to 720°
-            found["phi_idc"], found["phi_odc"] = (where(end >= 360.0, end - 360.0, end) for end in centres)
+            centres = (
+                where(end < 0, end + 360.0, end) for end in one.dead_centres()
+            )  # from −360° to 720°
+            found["phi_idc"], found["phi_odc"] = (
+                where(end >= 360.0, end - 360.0, end) for end in centres
+            )
         if self.omega is not None:
             found["v"] = one.crank * self.omega
         if not one.slides:
             return found
         pieces, (_, curvature, *_) = self._turn
-        found["stroke"], found["phi_b_zero"] = one.stroke, pieces.zeros(curvature).listed(self._count)
+        found["stroke"], found["phi_b_zero"] = (
+            one.stroke,
+            pieces.zeros(curvature).listed(self._count),
+        )
         if self.omega is None:
             return found
 
         found["c_m"] = mean = 2 * one.stroke * self.speed
-        found["c_work_m"], found["c_return_m"] = mean * (180.0 / one.phi_work), mean * (180.0 / one.phi_return)
+        found["c_work_m"], found["c_return_m"] = (
+            mean * (180.0 / one.phi_work),
+            mean * (180.0 / one.phi_return),
+        )
         found["c_max"], found["c_min"] = fastest, slowest = self._times_omega(self._searched[0], 1)
         if one.quick_return:
-            found["c_work_max"], found["c_return_max"] = fastest, Extreme(-slowest.value, slowest.degrees)
+            found["c_work_max"], found["c_return_max"] = (
+                fastest,
+                Extreme(-slowest.value, slowest.degrees),
+            )
         found["b_max"], found["b_min"] = self._times_omega(self._searched[1], 2)
         return found
 
@@ -255,7 +299,7 @@ class Motion(Results):
     def _offers(self) -> list[Offer]:
         """Columns that the mechanism offers with extremes in `kurbel motion`, where it has them."""
         here = CrankAngle.of(45.0)
-        declared = [one for one in self.mechanism.OFFERS if "motion" in one.quantity.extremes]
+        declared = [offer for offer in self.mechanism.OFFERS if "motion" in offer.quantity.extremes]
         return [one for one in declared if one.factor(self.mechanism, here) is not None]
 
     @cached_property
@@ -266,16 +310,21 @@ class Motion(Results):
         """
 
         def sampled(pieces: Pieces) -> Samples:
-            mechanism = self.mechanism if self._count is None else taken(self.mechanism, pieces.machine)
+            mechanism = (
+                self.mechanism if self._count is None else taken(self.mechanism, pieces.machine)
+            )
             angle = CrankAngle.at_nodes(pieces)
             angle = angle._replace(rod=mechanism.rod_angle(angle))
-            offered = [one.factor(mechanism, angle) for one in self._offers]
+            offered = [offer.factor(mechanism, angle) for offer in self._offers]
             found = (mechanism.slope(angle), mechanism.curvature(angle), *offered)
             return [pieces.filled(one) for one in found if one is not None]
 
         count = self._count or 1
         centres = every_dead_centre(self.mechanism, count, 360.0)
-        return refined(Pieces.between(Angles(np.repeat(np.arange(count), 2), centres.ravel()), count, 360.0), sampled)
+        return refined(
+            Pieces.between(Angles(np.repeat(np.arange(count), 2), centres.ravel()), count, 360.0),
+            sampled,
+        )
 
     @cached_property
     def _searched(self) -> list[Extremes]:
@@ -295,11 +344,17 @@ class Motion(Results):
         if number is None or self.omega is None:
             return None
         found = self._times_omega(self._searched[2 + number], self._offers[number].omega)
-        return None if every(found.largest.value - found.smallest.value <= 1e-14 * abs(found.largest.value)) else found
+        return (
+            None
+            if every(found.largest.value - found.smallest.value <= 1e-14 * abs(found.largest.value))
+            else found
+        )
 
 
 def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:
     """Return the dead centres of machines in a cycle of so many degrees, (count, k), turn after turn."""
-    each = np.stack([np.broadcast_to(one, count) for one in mechanism.dead_centres()], axis=1)
+    each = np.stack(
+        [np.broadcast_to(dead_centre, count) for dead_centre in mechanism.dead_centres()], axis=1
+    )
     turns: Array = each[:, None, :] + np.arange(0.0, cycle, 360.0)[:, None]
     return turns.reshape(count, -1)

@@ -60,10 +60,18 @@ def residual(cylinder: SampledCylinder) -> float | None:
     Both relative to the largest force; None where no force acts, or there is no connecting rod.
     """
     drive, mechanism = cylinder.drive, cylinder.drive.mechanism
-    if not drive.has_force or drive.count is not None or not (mechanism.has_rod and mechanism.slides):
+    if (
+        not drive.has_force
+        or drive.count is not None
+        or not (mechanism.has_rod and mechanism.slides)
+    ):
         return None
     state = State.at(drive, _ANGLES * drive.cycle)
-    sizes = [np.abs(one).max() for one in map(cylinder.sampled, ("P", "N", "D", "T", "S")) if one is not None]
+    sizes = [
+        np.abs(one).max()
+        for one in map(cylinder.sampled, ("P", "N", "D", "T", "S"))
+        if one is not None
+    ]
     if not any(sizes):
         return 0.0
     motion = _motion_of(state) if math.isfinite(mechanism.rod_length) else None
@@ -103,13 +111,20 @@ def _rod_of(drive: Drive) -> _Rod:
 
 def _motion_of(state: State) -> _Motion:
     """Return the motion of pins and rod, from the positions k = R e^{iφ} and k − c = −L e^{−iψ}."""
-    mechanism, sin, cos, (sin_psi, cos_psi) = state.mechanism, state.angle.sin, state.angle.cos, state.rod_angle
+    mechanism, sin, cos, (sin_psi, cos_psi) = (
+        state.mechanism,
+        state.angle.sin,
+        state.angle.cos,
+        state.rod_angle,
+    )
     R, L = mechanism.crank, mechanism.rod_length
     turn = R * cos / (L * cos_psi)
     bend = (turn * turn * sin_psi - R / L * sin) / cos_psi
     k: Any = R * (cos + 1j * sin)
     arm = L * (-cos_psi + 1j * sin_psi)
-    return _Motion(arm, 1j * k, 1j * (k + turn * arm), turn, -k, -k + (turn * turn + 1j * bend) * arm, bend)
+    return _Motion(
+        arm, 1j * k, 1j * (k + turn * arm), turn, -k, -k + (turn * turn + 1j * bend) * arm, bend
+    )
 
 
 def _energy(rod: _Rod, state: State, motion: _Motion) -> float:
@@ -124,7 +139,9 @@ def _energy(rod: _Rod, state: State, motion: _Motion) -> float:
     return float(np.abs(J - reduced_inertia(state)).max()) / size if size else 0.0
 
 
-def _of_rod(rod: _Rod, state: State, motion: _Motion, gravity: complex, square: float) -> list[Array]:
+def _of_rod(
+    rod: _Rod, state: State, motion: _Motion, gravity: complex, square: float
+) -> list[Array]:
     """Return the residuals of the forces on the rod, of their moments over L, and of S along it; square: ω² in 1/s²."""
     arm, angle, L = motion.arm, state.angle, state.drive.mechanism.rod_length
     at_crosshead, at_pin = on_crosshead_pin(state), on_pin(state)
@@ -136,7 +153,10 @@ def _of_rod(rod: _Rod, state: State, motion: _Motion, gravity: complex, square: 
     weight, weighed_at = (rod.mass * gravity, rod.centre) if rod.exact else (lower * gravity, 0.0)
     pull = rod.mass * (motion.crosshead * (1 - rod.centre) + motion.pin * rod.centre) * square
     forces = ((arm, -K), (arm * weighed_at, weight + 0 * K), (arm * rod.centre, -pull))
-    moment = sum((at.conjugate() * force).imag for at, force in forces) + rod.inertia * motion.bend * square
+    moment = (
+        sum((at.conjugate() * force).imag for at, force in forces)
+        + rod.inertia * motion.bend * square
+    )
     if state.rubbing is not None:
         moment = moment + state.rubbing.at_crank + state.rubbing.at_crosshead
 

@@ -14,7 +14,7 @@ from kurbel.arrays import Array
 from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import Answers, value, values_for
+from kurbel.quantity import ValuesById, value, values_for
 from kurbel.solver.cycle import reversals
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, result
@@ -37,9 +37,14 @@ class RodLoads(Results):
     magnitudes; 0, at the angle that comes nearest, if the rod is never in tension, or compression.
     """
 
-    rod_load_max = values_for(_LOADS, "*_max", "*", "force", "Largest *", group=lambda load: load.rpartition("_")[0])
+    rod_load_max = values_for(
+        _LOADS, "*_max", "*", "force", "Largest *", group=lambda load: load.rpartition("_")[0]
+    )
     phi_rod_reversal = value(
-        "φ_G=0", "angle", "Crank angles at which the rod load at the crosshead pin reverses", listed=True
+        "φ_G=0",
+        "angle",
+        "Crank angles at which the rod load at the crosshead pin reverses",
+        listed=True,
     )
     reversal_angle = value(
         "Δφ_G",
@@ -47,7 +52,9 @@ class RodLoads(Results):
         "Crank angle per cycle with the rod in compression or in tension, whichever is smaller; a bound is a minimum",
         wanted_large=True,
     )
-    reversal_longest = value("Δφ_G,1", "angle", "Its longest continuous range; a bound is a minimum", wanted_large=True)
+    reversal_longest = value(
+        "Δφ_G,1", "angle", "Its longest continuous range; a bound is a minimum", wanted_large=True
+    )
     reversal_ratio = value(
         "P_G,min/max",
         "ratio",
@@ -59,26 +66,37 @@ class RodLoads(Results):
         self.drive, self.pieces, self.loads = drive, pieces, loads
 
     @cached_property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The key values."""
-        found, count = Answers(), self.drive.count
+        found, count = ValuesById(), self.drive.count
         extremes = self.pieces.extremes([*self.loads.values()]).each(partial(result, count=count))
         peaks = dict(zip(self.loads, extremes))
         for load in _LOADS:
             column, _, side = load.rpartition("_")
             if peak := peaks.get(f"P_{column}"):
-                size, degrees = peak.largest if side == "compression" else (-peak.smallest.value, peak.smallest.degrees)
+                size, degrees = (
+                    peak.largest
+                    if side == "compression"
+                    else (-peak.smallest.value, peak.smallest.degrees)
+                )
                 found[f"{load}_max"] = Extreme(where(size > 0, size, 0.0), degrees)
         if "P_rod" not in self.loads:
             return found
 
-        found["phi_rod_reversal"] = changes = reversals(self.drive, self.pieces, self.loads["P_rod"])
+        found["phi_rod_reversal"] = changes = reversals(
+            self.drive, self.pieces, self.loads["P_rod"]
+        )
         whole, longest = self._reversed([changes] if count is None else list(changes))
-        found["reversal_angle"], found["reversal_longest"] = result(whole, count), result(longest, count)
+        found["reversal_angle"], found["reversal_longest"] = (
+            result(whole, count),
+            result(longest, count),
+        )
         found["reversal_ratio"] = angle = found["reversal_angle"]
         if some(angle > 0):
             pressed, pulled = (abs(one.value) for one in peaks["P_rod"])
-            ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
+            ratio = where(pressed < pulled, pressed, pulled) / where(
+                pressed < pulled, pulled, pressed
+            )
             found["reversal_ratio"] = where(angle > 0, ratio, 0.0)
         return found
 
@@ -87,10 +105,16 @@ class RodLoads(Results):
 
         All of them, and the longest stretch; 0 where the load does not reverse. changes: of each machine, in degrees.
         """
-        counts = [len(one) for one in changes]
-        widths = [np.diff([*one, *(first + self.drive.cycle for first in one[:1])]) for one in changes]
+        counts = [len(change) for change in changes]
+        widths = [
+            np.diff([*change, *(first + self.drive.cycle for first in change[:1])])
+            for change in changes
+        ]
         middles = np.concatenate([*map(np.array, changes)]) + np.concatenate(widths) / 2
-        presses = self.pieces.at(self.loads["P_rod"], np.repeat(np.arange(len(changes)), counts), middles) > 0
+        presses = (
+            self.pieces.at(self.loads["P_rod"], np.repeat(np.arange(len(changes)), counts), middles)
+            > 0
+        )
         found = np.zeros((2, len(changes)))
         for number, own in enumerate(np.split(presses, np.cumsum(counts)[:-1])):
             less = min(widths[number][own], widths[number][~own], key=np.sum)

@@ -110,7 +110,12 @@ class FreeBody:
     """
 
     def __init__(
-        self, shaft: Crankshaft, crank: Number, rods: Sequence[Force], weight: Force, torque_A: Number | None = None
+        self,
+        shaft: Crankshaft,
+        crank: Number,
+        rods: Sequence[Force],
+        weight: Force,
+        torque_A: Number | None = None,
     ) -> None:
         self.shaft, self.crank, self.weight, self.torque_A = shaft, crank, weight, torque_A
         self.rods = list(zip(rods, shaft.rod_places(len(rods))))
@@ -145,14 +150,24 @@ class FreeBody:
         """
         shaft = self.shaft
         forces = [*(force for force, _ in self.rods), -self.A, -self.B, self.weight + 0 * self.A]
-        arms = [*(u for _, u in self.rods), shaft.place_A, shaft.b, shaft.b + shaft.flywheel_position]
+        arms = [
+            *(u for _, u in self.rods),
+            shaft.place_A,
+            shaft.b,
+            shaft.b + shaft.flywheel_position,
+        ]
         bends = [force * arm for force, arm in zip(forces, arms)]
-        twists = [torque, *(force.imag * self.crank for force in forces[len(self.rods) :])]  # the pin's have no arm
+        twists = [
+            torque,
+            *(force.imag * self.crank for force in forces[len(self.rods) :]),
+        ]  # the pin's have no arm
         size_of_forces = sum(np.abs(force) for force in forces)
         size_of_moments = sum(np.abs(moment) for moment in [*bends, *twists])
         left_of_forces = np.abs(sum(forces))
         left_of_moments = np.hypot(np.abs(sum(bends)), sum(twists))
-        return np.maximum(_share(left_of_forces, size_of_forces), _share(left_of_moments, size_of_moments))
+        return np.maximum(
+            _share(left_of_forces, size_of_forces), _share(left_of_moments, size_of_moments)
+        )
 
 
 def _at_least_0(arm: Number) -> Number:
@@ -194,7 +209,9 @@ class SupportedShaft:
     def __init__(self, machine: Machine) -> None:
         assert machine.crankshaft is not None
         self.machine, self.shaft = machine, machine.crankshaft
-        throws = sorted(throws_of(machine.cylinders), key=lambda throw: float(np.ravel(throw.place)[0]))
+        throws = sorted(
+            throws_of(machine.cylinders), key=lambda throw: float(np.ravel(throw.place)[0])
+        )
         for one, following in pairwise(throws):
             _decided(one.place <= following.place)
         overhung, last = self.shaft.overhung, len(throws) - 1
@@ -217,16 +234,25 @@ class SupportedShaft:
         a rod is not included: its force acts on the pin.
         """
         cranks = throws_with_masses(self.machine)
-        weights = (*(crank.weight(crank.unbalanced) for crank in cranks), *counterweights_of(self.machine, cranks))
-        for one in weights:
-            own = cranks[one.owner].place
-            if one.place is None or one.place is own or (own is not None and _decided(one.place == own)):
-                number = next(number for number, throw in enumerate(throws) if one.owner in throw.cylinders)
-                yield number, one.product, 0.0
+        weights = (
+            *(crank.weight(crank.unbalanced) for crank in cranks),
+            *counterweights_of(self.machine, cranks),
+        )
+        for weight in weights:
+            own = cranks[weight.owner].place
+            if (
+                weight.place is None
+                or weight.place is own
+                or (own is not None and _decided(weight.place == own))
+            ):
+                number = next(
+                    number for number, throw in enumerate(throws) if weight.owner in throw.cylinders
+                )
+                yield number, weight.product, 0.0
             else:
-                distances = [np.asarray(abs(throw.place - one.place)) for throw in throws]
+                distances = [np.asarray(abs(throw.place - weight.place)) for throw in throws]
                 nearest = int(_decided(np.argmin(np.broadcast_arrays(*distances), axis=0)))
-                yield nearest, one.product, one.place - throws[nearest].place
+                yield nearest, weight.product, weight.place - throws[nearest].place
 
     def throw_of(self, cylinder: int) -> Throw:
         """Return the throw on whose pin a cylinder is, by its number from 0."""
@@ -244,7 +270,9 @@ class SupportedShaft:
         body = FreeBody(self.shaft, cylinder.mechanism.crank, rods, weight)
         omega = 0.0 if self.machine.speed is None else 2 * math.pi * self.machine.speed
         # what turns pulls outward, against D
-        return body.A - np.conj(throw.at_A) * omega * omega, body.B - np.conj(throw.at_B) * omega * omega
+        return body.A - np.conj(throw.at_A) * omega * omega, body.B - np.conj(
+            throw.at_B
+        ) * omega * omega
 
 
 def strength_obstacle(machine: Machine) -> str:
@@ -256,10 +284,19 @@ def strength_obstacle(machine: Machine) -> str:
 def shaft_obstacle(machine: Machine) -> str:
     """Return why the loads on the main bearings of a machine cannot be given, or an empty text."""
     if machine.crankshaft is None:
-        return "no 'crankshaft' given, which has the lengths of a throw: 'crankshaft: {a: …, b: …, …}'"
+        return (
+            "no 'crankshaft' given, which has the lengths of a throw: 'crankshaft: {a: …, b: …, …}'"
+        )
     if not machine.cylinders:
         return "no cylinder loads them; 'effort' gives a torque and no force"
-    unknown = next((one.mechanism.name for one in machine.cylinders if not one.mechanism.has_rod), None)
+    unknown = next(
+        (
+            cylinder.mechanism.name
+            for cylinder in machine.cylinders
+            if not cylinder.mechanism.has_rod
+        ),
+        None,
+    )
     if unknown is not None:
         return f"the force of a {unknown} on the crank pin is not followed to the bearings"
     count = len(throws_of(machine.cylinders))
@@ -282,9 +319,13 @@ def throws_of(cylinders: Sequence[Cylinder]) -> list[Throw]:
         angle = _remainder(one.bank_angle - one.crank_position)
         place = 0.0 if one.axial_position is None else one.axial_position
         for index, throw in enumerate(found):
-            same = (magnitude(_remainder(throw.angle - angle)) <= _ALIKE) & (magnitude(throw.place - place) <= _ALIKE)
+            same = (magnitude(_remainder(throw.angle - angle)) <= _ALIKE) & (
+                magnitude(throw.place - place) <= _ALIKE
+            )
             for other in throw.cylinders:
-                same = same & (magnitude(_remainder(cylinders[other].bank_angle - one.bank_angle)) > _ALIKE)
+                same = same & (
+                    magnitude(_remainder(cylinders[other].bank_angle - one.bank_angle)) > _ALIKE
+                )
             if _decided(same):
                 found[index] = throw._replace(cylinders=(*throw.cylinders, number))
                 break
@@ -350,15 +391,25 @@ def throws_with_masses(machine: Machine, first: Number = 0.0) -> list[CylinderTh
     found = []
     for number, one in enumerate(machine.cylinders):
         masses, length, bank = one.masses, one.mechanism.rod_length, one.bank_angle - first
-        of_masses = (masses.at_pin(length), masses.rotating, masses.at_crosshead(length)) if masses else (0.0,) * 3
+        of_masses = (
+            (masses.at_pin(length), masses.rotating, masses.at_crosshead(length))
+            if masses
+            else (0.0,) * 3
+        )
         arm = one.mechanism.crank * unit_vector(bank - one.crank_position)
-        found.append(CylinderThrow(number, one.name, one, one.axial_position, bank, arm, *of_masses))
+        found.append(
+            CylinderThrow(number, one.name, one, one.axial_position, bank, arm, *of_masses)
+        )
     return found
 
 
 def middle_of(machine: Machine) -> Any:
     """Return the reference plane of moments in m: the one given, or midway between the outer cylinders."""
-    places = [one.axial_position for one in machine.cylinders if one.axial_position is not None]
+    places = [
+        cylinder.axial_position
+        for cylinder in machine.cylinders
+        if cylinder.axial_position is not None
+    ]
     if machine.moment_reference is not None or not places:
         return machine.moment_reference
     each = np.broadcast_arrays(*places)
@@ -391,7 +442,9 @@ def counterweights_of(machine: Machine, throws: Sequence[CylinderThrow]) -> Iter
             # an angle counts from the throw; with several throws a weight without a place belongs to none of them
             otherwise = owners[0].place if len(owners) == 1 else None
             for one in weights:
-                product = one.product * unit_vector(owners[0].bank - owners[0].cylinder.crank_position + one.angle)
+                product = one.product * unit_vector(
+                    owners[0].bank - owners[0].cylinder.crank_position + one.angle
+                )
                 place = otherwise if one.axial_position is None else one.axial_position
                 yield Weight(product, 1, place, owners[0].number)
 
@@ -402,7 +455,9 @@ def split_by_lever(weight: Weight, planes: tuple[Any, ...], owner: str) -> tuple
     Raises UsageError, naming its owner, where its axial position is not known.
     """
     if weight.place is None:
-        raise UsageError(f"{owner}: weights in two planes need its 'axial_position', or 'spacing' of equal cylinders")
+        raise UsageError(
+            f"{owner}: weights in two planes need its 'axial_position', or 'spacing' of equal cylinders"
+        )
     first, second = planes
     share = (weight.place - first) / (second - first)
     return (

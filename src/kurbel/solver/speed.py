@@ -53,7 +53,12 @@ class SpeedLaw(NamedTuple):
     def of(cls, effort: TurningEffort) -> SpeedLaw | None:
         """Return the law of a machine; None where its load does not depend on the speed, or has a mean of zero."""
         load = effort.machine.load
-        if load is None or not effort.mean.any() or load.diagram or (load.slip is None and every(load.power == 0)):
+        if (
+            load is None
+            or not effort.mean.any()
+            or load.diagram
+            or (load.slip is None and every(load.power == 0))
+        ):
             return None
         return cls(effort.mean, load.power, load.slip)
 
@@ -79,9 +84,18 @@ class SpeedLine(Results):
     growth: logarithm of the factor by which a small disturbance of the speed changes in one cycle.
     """
 
-    delta = value("δ", "ratio", "Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m", lambda one: one.fluctuation)
-    omega_max = value("ω_max", "angular_velocity", "Largest angular velocity", lambda one: one.extreme(0))
-    omega_min = value("ω_min", "angular_velocity", "Smallest angular velocity", lambda one: one.extreme(2))
+    delta = value(
+        "δ",
+        "ratio",
+        "Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m",
+        lambda one: one.fluctuation,
+    )
+    omega_max = value(
+        "ω_max", "angular_velocity", "Largest angular velocity", lambda one: one.extreme(0)
+    )
+    omega_min = value(
+        "ω_min", "angular_velocity", "Smallest angular velocity", lambda one: one.extreme(2)
+    )
     omega_mean = value(
         "ω_m",
         "angular_velocity",
@@ -92,12 +106,18 @@ class SpeedLine(Results):
     growth: Any
 
     def __init__(
-        self, effort: TurningEffort, pieces: Pieces, u: Array, mean: Array, failed: Flags, least: float
+        self,
+        effort: TurningEffort,
+        pieces: Pieces,
+        u: Array,
+        mean: Array,
+        failed: Flags,
+        least: float,
     ) -> None:
         beyond = ~(pieces.largest(u) < _FASTEST)
         self.effort, self.pieces, self.mean = effort, pieces, mean
         self.u = np.where(pieces.of(failed) | ~np.isfinite(u), 0.0, u)
-        self._ends = [one[0] for one in pieces.extremes(self.u[None])]
+        self._ends = [extreme[0] for extreme in pieces.extremes(self.u[None])]
         stands = self._ends[2] <= least
         self.failed = failed | beyond | stands
         if effort.count is None and stands[0]:
@@ -175,7 +195,9 @@ class SpeedEquation:
     def known(self, pieces: Pieces) -> Array:
         """Return M − M_load at uniform rotation in N m, and the kinetic energy ½ J(φ) ω_n² in J."""
         excess, moving = pieces.carried(self._course, self._effort.pieces)
-        return np.stack((excess, (moving + pieces.of(self.flywheel)) * pieces.of(self._effort.omega**2 / 2)))
+        return np.stack(
+            (excess, (moving + pieces.of(self.flywheel)) * pieces.of(self._effort.omega**2 / 2))
+        )
 
     def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return z′ and its derivative by z."""
@@ -193,11 +215,15 @@ class RigidLine(SpeedLine):
 
     def __init__(self, effort: TurningEffort, law: SpeedLaw | None, flywheel: Array) -> None:
         moving, first = effort.J_moving, effort.pieces.first
-        least, most = (one.reduceat(one.reduce(moving), first) + flywheel for one in (np.minimum, np.maximum))
+        least, most = (
+            one.reduceat(one.reduce(moving), first) + flywheel for one in (np.minimum, np.maximum)
+        )
         failed = least <= _NO_INERTIA * most
         if effort.count is None and failed[0]:
             angle = float(effort.pieces.degrees.T.ravel()[np.argmin(moving.T)])
-            raise UsageError(f"no rotating part has inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
+            raise UsageError(
+                f"no rotating part has inertia at φ = {angle:.4g}°: give 'flywheel' an inertia"
+            )
         self.law = law
         # any inertia for the failed ones of a batch, so that the others are computed
         self._equation = SpeedEquation(effort, law, np.where(failed, 1.0, flywheel))
@@ -206,7 +232,9 @@ class RigidLine(SpeedLine):
             found = periodic(self._equation, effort.pieces)
             if effort.count is None:
                 found.refuse()
-            failed = failed | found.failed | (law.mean == 0)  # in a batch: a load with a mean of zero
+            failed = (
+                failed | found.failed | (law.mean == 0)
+            )  # in a batch: a load with a mean of zero
             sample = self._speeds(found.pieces, found.samples[0], np.zeros(len(failed)))
             pieces, (u, lag) = refined(found.pieces, sample)
         else:
@@ -237,7 +265,9 @@ class RigidLine(SpeedLine):
         pieces, E = effort.pieces, effort.true_excess.E
         while True:
             excess, energy = pieces.carried(E, effort.pieces), self._equation.known(pieces)[1]
-            least = np.maximum.reduceat(((_SLOWEST**2 - 1) * energy - excess).max(axis=0), pieces.first)
+            least = np.maximum.reduceat(
+                ((_SLOWEST**2 - 1) * energy - excess).max(axis=0), pieces.first
+            )
             swing, constant = pieces.largest(excess), least
             for _ in range(100):
                 _, lag = self._speeds(effort.pieces, E, constant)(pieces)
@@ -267,7 +297,9 @@ class RigidLine(SpeedLine):
             u, (excess, energy) = pieces.carried(self.u, self.pieces), self._equation.known(pieces)
             ratio, torque = u * (2 + u), pieces.carried(effort.inertia_torque, effort.pieces)
             rise = self.law.rise(ratio, pieces)[0] if self.law else 0.0
-            return ((excess - rise + ratio * torque) / energy * pieces.of(effort.omega**2 / 2))[None]
+            return ((excess - rise + ratio * torque) / energy * pieces.of(effort.omega**2 / 2))[
+                None
+            ]
 
         pieces, (values,) = refined(self.pieces, sample)
         return pieces, np.where(pieces.of(self.failed), 0.0, values)

@@ -36,7 +36,7 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.numerics.arithmetic import some, total
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import Row, column, value
+from kurbel.quantity import QuantityRow, column, value
 from kurbel.solver.chambers import Chambers
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
@@ -63,12 +63,20 @@ class State(Chambers):
     pin_friction: whether friction in pins and journals is included.
     """
 
-    def __init__(self, drive: Drive, angle: CrankAngle, within: Array, pin_friction: bool = True) -> None:
+    def __init__(
+        self, drive: Drive, angle: CrankAngle, within: Array, pin_friction: bool = True
+    ) -> None:
         super().__init__(drive, angle, within)
         self.pin_friction = pin_friction
 
     @classmethod
-    def at(cls, drive: Drive, degrees: Array, within: Array | None = None, machine: Indices | None = None) -> State:
+    def at(
+        cls,
+        drive: Drive,
+        degrees: Array,
+        within: Array | None = None,
+        machine: Indices | None = None,
+    ) -> State:
         """Return the state at crank angles (n,) in degrees.
 
         within: at a jump the value is taken on the side of these angles (n,), by default just after it. machine: index
@@ -91,11 +99,15 @@ class State(Chambers):
     @cached_property
     def _frictionless(self) -> State:
         state = State(self.drive, self.posed, self.within, pin_friction=False)
-        state.slope, state.curvature, state.piston_forces = self.slope, self.curvature, self.piston_forces
+        state.slope, state.curvature, state.piston_forces = (
+            self.slope,
+            self.curvature,
+            self.piston_forces,
+        )
         return state
 
     @property
-    def rows(self) -> Mapping[str, Row]:
+    def rows(self) -> Mapping[str, QuantityRow]:
         """The rows of its columns, those of the mechanism among them."""
         return column_rows(State, self.mechanism.OFFERS)
 
@@ -111,13 +123,17 @@ class State(Chambers):
         """
         drive = self.drive
         # tandem pistons are on the rod itself, without a lever
-        tandem = [False if gas is drive.own_gas else gas.piston.lever_ratio == 1 for gas in drive.gas]
+        tandem = [
+            False if gas is drive.own_gas else gas.piston.lever_ratio == 1 for gas in drive.gas
+        ]
         force = self.force_of(tandem) if some(any_of(tandem)) else None
         masses = drive.cylinder.masses.pistons if drive.cylinder.masses else ()
         pistons = drive.cylinder.pistons
         if force is None or len(masses) != len(pistons):
             return force
-        carried = total(*(mass * (one.lever_ratio == 1) for mass, one in zip(masses[1:], pistons[1:])))
+        carried = total(
+            *(mass * (one.lever_ratio == 1) for mass, one in zip(masses[1:], pistons[1:]))
+        )
         force = force - self.b * carried if drive.has_inertia else force
         return force + drive.weight_of(carried)[0]
 
@@ -128,7 +144,9 @@ class State(Chambers):
         "force",
         "Inertia force −m b of the reciprocating masses",
         lambda state: (
-            state.curvature * (-state.drive.mass * state.omega * state.omega) if state.drive.has_inertia else None
+            state.curvature * (-state.drive.mass * state.omega * state.omega)
+            if state.drive.has_inertia
+            else None
         ),
     )
     P_weight = value(
@@ -197,7 +215,11 @@ class State(Chambers):
             return None
         mass: Number = 0.0
         if masses:
-            mass = masses.parts if crosshead or masses.crosshead is None else masses.parts - masses.crosshead
+            mass = (
+                masses.parts
+                if crosshead or masses.crosshead is None
+                else masses.parts - masses.crosshead
+            )
         moved = self.P_gas - self.b * mass if self.drive.has_inertia else self.P_gas
         return moved + self.drive.weight_of(mass)[0]
 
@@ -241,7 +263,9 @@ class State(Chambers):
         rod, (sin_psi, cos_psi) = self.drive.rod, self.rod_angle or (0.0, 1.0)
         if rod is None or self.omega is None:
             return 0.0
-        bend = formulas.rod_curvature(self.angle.sin, sin_psi, cos_psi, self.rod_slope, self.mechanism.lam)
+        bend = formulas.rod_curvature(
+            self.angle.sin, sin_psi, cos_psi, self.rod_slope, self.mechanism.lam
+        )
         return bend * (rod.excess_inertia * self.omega * self.omega)
 
     def _side(self, couple: Number) -> Number:
@@ -266,7 +290,11 @@ class State(Chambers):
     @cached_property
     def _rod_side(self) -> Number:
         """Side force in N of all couples on the rod: inertia couple of an exact rod, and friction in its pins."""
-        return self._friction_side if self.drive.rod is None else self._side(self.rod_couple) + self._friction_side
+        return (
+            self._friction_side
+            if self.drive.rod is None
+            else self._side(self.rod_couple) + self._friction_side
+        )
 
     @cached_property
     def rubbing(self) -> FrictionMoments | None:
@@ -281,18 +309,22 @@ class State(Chambers):
         pin = on_pin(self.without_pin_friction)
         bearings: Number = np.hypot(*pin)
         if friction.line is not None and some(friction.journals != 0):
-            names = [one.name for one in drive.machine.cylinders]
+            names = [cylinder.name for cylinder in drive.machine.cylinders]
             throw = friction.line.throw_of(names.index(drive.name))
             count = len(throw.cylinders)
             # as though all rods on the pin loaded it alike, in its middle
-            reactions = friction.line.reactions(throw, [pin.complex * count], drive.cylinder, self.angle)
+            reactions = friction.line.reactions(
+                throw, [pin.complex * count], drive.cylinder, self.angle
+            )
             bearings = sum(np.abs(force) for force in reactions) / count
         at_crosshead: Number = 0.0
         if self.rod_angle is not None:  # the rod turns by −dψ, which friction opposes
             at_crosshead = np.hypot(*on_crosshead_pin(self.without_pin_friction)) * (
                 self._forward * friction.crosshead_pin
             )
-        return FrictionMoments(np.hypot(*pin) * friction.crank_pin, at_crosshead, bearings * friction.journals)
+        return FrictionMoments(
+            np.hypot(*pin) * friction.crank_pin, at_crosshead, bearings * friction.journals
+        )
 
     # the guide
 
@@ -300,14 +332,21 @@ class State(Chambers):
     def pressure_difference(self) -> Number:
         """Pressure difference in Pa across the cylinder's own piston, head end less crank end."""
         gas = self.drive.own_gas
-        head, crank = (self.pressure(end) if end else 0.0 for end in ((gas.head, gas.crank) if gas else (None, None)))
+        head, crank = (
+            self.pressure(end) if end else 0.0
+            for end in ((gas.head, gas.crank) if gas else (None, None))
+        )
         return head - crank
 
     @cached_property
     def steady_friction(self) -> Number:
         """Friction force in N of the piston rings and of `friction: constant`, which are independent of N."""
         drive = self.drive
-        by_gas = np.abs(self.pressure_difference) * drive.ring_surface if some(drive.ring_surface != 0) else 0.0
+        by_gas = (
+            np.abs(self.pressure_difference) * drive.ring_surface
+            if some(drive.ring_surface != 0)
+            else 0.0
+        )
         return drive.constant_friction + by_gas
 
     @cached_property
@@ -320,7 +359,10 @@ class State(Chambers):
     def guide_sense(self) -> Number:
         """Numerator of N: P sin ψ + G cos ψ in N, G: weight on the guide less side forces of couples."""
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
-        return self.after_steady_friction * sin_psi + (self.drive.guide_weight - self._rod_side) * cos_psi
+        return (
+            self.after_steady_friction * sin_psi
+            + (self.drive.guide_weight - self._rod_side) * cos_psi
+        )
 
     @cached_property
     def guide_side(self) -> Array:
@@ -329,14 +371,18 @@ class State(Chambers):
         if np.ndim(self.angle.sin) > 1:
             sense = rule(len(self.phi)).weights @ sense
         elif self.within is not self.phi:
-            sense = State(self.drive, CrankAngle.of(self.within), self.within, self.pin_friction).guide_sense
+            sense = State(
+                self.drive, CrankAngle.of(self.within), self.within, self.pin_friction
+            ).guide_sense
         return np.where(sense >= 0, 1.0, -1.0)
 
     @property
     def guide_denominator(self) -> Array:
         """Denominator of N: cos ψ + f sin ψ sgn c sgn N; ≤ 0 where the crosshead is self-locking."""
         sin_psi, cos_psi = self.rod_angle
-        return cos_psi + sin_psi * (self.guide_side * self.direction * self.drive.crosshead_friction)
+        return cos_psi + sin_psi * (
+            self.guide_side * self.direction * self.drive.crosshead_friction
+        )
 
     @cached_property
     def drag_of_guides(self) -> Number:
@@ -362,7 +408,9 @@ class State(Chambers):
             return self.filled(drive.guide_weight - self._friction_side) if known else None
         if not drive.rubs:
             sin_psi, cos_psi = self.rod_angle
-            return self.after_steady_friction * (sin_psi / cos_psi) + (drive.guide_weight - self._rod_side)
+            return self.after_steady_friction * (sin_psi / cos_psi) + (
+                drive.guide_weight - self._rod_side
+            )
         below = self.guide_denominator
         locked = below <= 0
         if locked.any():
@@ -379,14 +427,18 @@ class State(Chambers):
     @property
     def crosshead_drag(self) -> Number:
         """Crosshead friction f |N| in N, magnitude."""
-        return self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
+        return (
+            self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
+        )
 
     p_guide = value(
         "p_g",
         "pressure",
         "Mean pressure of the crosshead shoe on its guide, |N| over its area",
         lambda state: (
-            None if state.drive.guide_area is None or state.N is None else abs(state.N) / state.drive.guide_area
+            None
+            if state.drive.guide_area is None or state.N is None
+            else abs(state.N) / state.drive.guide_area
         ),
     )
     wear = value(
@@ -394,7 +446,9 @@ class State(Chambers):
         "power",
         "Friction power on the guide, the measure of its wear (Redtenbacher)",
         lambda state: (
-            None if state.p_guide is None or state.c is None else state.crosshead_drag * state.c * state.direction
+            None
+            if state.p_guide is None or state.c is None
+            else state.crosshead_drag * state.c * state.direction
         ),
     )
 
@@ -413,7 +467,11 @@ class State(Chambers):
         if rod is None:
             return push
         along, across = self.drive.weight_of(rod.pin_mass)
-        return push - self.drive.centrifugal(rod.pin_mass) + (self.angle.cos * along + self.angle.sin * across)
+        return (
+            push
+            - self.drive.centrifugal(rod.pin_mass)
+            + (self.angle.cos * along + self.angle.sin * across)
+        )
 
     M_out = value(
         "M_2",
@@ -433,7 +491,9 @@ class State(Chambers):
         if self.drive.rod is None:
             return 0.0
         along, across = self.drive.weight_of(self.drive.rod.pin_mass)
-        return (self.angle.sin * along - self.angle.cos * across) - self._side(self.rod_couple) * self.angle.cos
+        return (self.angle.sin * along - self.angle.cos * across) - self._side(
+            self.rod_couple
+        ) * self.angle.cos
 
     @column("T", "force", extremes=("forces",), called="tangential force", peak=True)
     def T(self) -> Any:
@@ -470,7 +530,10 @@ class State(Chambers):
         found, lost = self.rubbing, dict[str, Number]()
         if found is not None:
             lost["crank_pin"] = found.at_crank * (1 + self.rod_slope)
-            lost["crosshead_pin"], lost["journals"] = found.at_crosshead * self.rod_slope, found.journals
+            lost["crosshead_pin"], lost["journals"] = (
+                found.at_crosshead * self.rod_slope,
+                found.journals,
+            )
         if self.drive.yoke_rubs:
             lost["block"] = self._friction_side * self.angle.cos * self.mechanism.crank
         return lost
@@ -508,7 +571,9 @@ def reduced_inertia(state: State) -> Any:
     """Return the reduced moment of inertia of a cylinder's moving masses in kg m²: m x′² + m_pin R² + I_excess ψ′²."""
     drive, rod = state.drive, state.drive.rod
     inertia = state.slope * state.slope * drive.mass + drive.pin_inertia
-    return inertia if rod is None else inertia + state.rod_slope * state.rod_slope * rod.excess_inertia
+    return (
+        inertia if rod is None else inertia + state.rod_slope * state.rod_slope * rod.excess_inertia
+    )
 
 
 def _sum(first: Any, second: Any) -> Any:

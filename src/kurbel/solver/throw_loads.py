@@ -32,4 +32,6 @@ def resampled(pieces: Pieces, forces: CylinderForces, *values: Force) -> Complex
 
 def real_parts(loads: Sequence[Force], shape: tuple[int, ...]) -> Array:
     """Return real and imaginary part of every load, (2 q, nodes, pieces)."""
-    return np.stack([np.broadcast_to(part, shape) for one in loads for part in (np.real(one), np.imag(one))])
+    return np.stack(
+        [np.broadcast_to(part, shape) for load in loads for part in (np.real(load), np.imag(load))]
+    )

@@ -36,10 +36,18 @@ class ValveGear(Results):
 
     _valve = Heading("Valve")
     valve_travel = value(
-        "2r", "length", "Travel of the valve", lambda gear: 2 * gear.valve.eccentric.radius, commands=_MOTION
+        "2r",
+        "length",
+        "Travel of the valve",
+        lambda gear: 2 * gear.valve.eccentric.radius,
+        commands=_MOTION,
     )
     advance = value(
-        "δ_E", "angle", "Angle of advance of the eccentric", lambda gear: gear.valve.eccentric.advance, commands=_MOTION
+        "δ_E",
+        "angle",
+        "Angle of advance of the eccentric",
+        lambda gear: gear.valve.eccentric.advance,
+        commands=_MOTION,
     )
     valve_shift = value(
         "ε_E",
@@ -48,9 +56,17 @@ class ValveGear(Results):
         lambda gear: gear.valve.shift,
         commands=_MOTION,
     )
-    cut_off = _of_end("cut_off", "x_E,*", "ratio", "Cut-off at the *: fraction of the stroke at which admission ends")
+    cut_off = _of_end(
+        "cut_off",
+        "x_E,*",
+        "ratio",
+        "Cut-off at the *: fraction of the stroke at which admission ends",
+    )
     release = _of_end(
-        "release", "x_A,*", "ratio", "Release at the *: fraction of the stroke at which the exhaust opens"
+        "release",
+        "x_A,*",
+        "ratio",
+        "Release at the *: fraction of the stroke at which the exhaust opens",
     )
     compression = _of_end(
         "compression",
@@ -59,18 +75,30 @@ class ValveGear(Results):
         "Compression at the *: part of the return stroke left when the exhaust shuts",
     )
     admission = _of_end(
-        "admission", "x_V,*", "ratio", "Admission at the *: part of the return stroke left when steam enters"
+        "admission",
+        "x_V,*",
+        "ratio",
+        "Admission at the *: part of the return stroke left when steam enters",
     )
     lead = _of_end("lead", "v_*", "length", "Lead at the *: opening to steam at its dead centre")
     exhaust_lead = _of_end(
-        "exhaust_lead", "v_i,*", "length", "Exhaust lead at the *: opening to the exhaust at the end of its stroke"
+        "exhaust_lead",
+        "v_i,*",
+        "length",
+        "Exhaust lead at the *: opening to the exhaust at the end of its stroke",
     )
     opening = _of_end("opening", "a_max,*", "length", "Largest opening to steam at the *")
     steam_speed = _of_end(
-        "steam_speed", "u_*", "velocity", "Mean speed of the steam through the largest opening at the *"
+        "steam_speed",
+        "u_*",
+        "velocity",
+        "Mean speed of the steam through the largest opening at the *",
     )
     steam_speed_max = _of_end(
-        "steam_speed_max", "u_max,*", "velocity", "Largest speed of the steam through the largest opening at the *"
+        "steam_speed_max",
+        "u_max,*",
+        "velocity",
+        "Largest speed of the steam through the largest opening at the *",
     )
 
     def __init__(self, valve: Valve, cylinder: Cylinder, motion: Motion) -> None:
@@ -98,7 +126,9 @@ class ValveGear(Results):
     def notes(self) -> Iterator[str]:
         """What a reader of the results should know, each in one sentence; of a single machine."""
         chambers = self.cylinder.pistons[0].chambers if self.cylinder.pistons else {}
-        others = [end.replace("_", " ") for end, card in chambers.items() if not isinstance(card, Steam)]
+        others = [
+            end.replace("_", " ") for end, card in chambers.items() if not isinstance(card, Steam)
+        ]
         if others:
             ends = " and the ".join(others)
             yield f"the events of 'valve' do not change the pressures of the {ends}, which are given"

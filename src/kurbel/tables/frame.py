@@ -13,10 +13,10 @@ import numpy as np
 
 from kurbel.arrays import Array, Number
 from kurbel.declared.forms.figures import MACHINE
-from kurbel.declared.numerals import NUMBER, RATIO, parse_ratio, plain
-from kurbel.declared.reading import LONGEST_VALUE, shown
+from kurbel.declared.numerals import NUMBER, RATIO, keyboard_text, parse_ratio
+from kurbel.declared.reading import LONGEST_VALUE, text_in_one_line
 from kurbel.declared.unit_systems import convert, show, shown_unit, units_of
-from kurbel.declared.units import example, unit_factor
+from kurbel.declared.units import kind_example, unit_factor
 from kurbel.errors import NoSolutionError, Nowhere, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
@@ -107,13 +107,17 @@ class Subject(NamedTuple):
         """Yield its key values of a command in SI, without those that are printed only on request."""
         for quantity, of, unless in self.results.rows.key_values.values() if self.results else ():
             printed = command in quantity.commands and command not in quantity.on_request
-            if printed and not (unless and unless(self.results)) and (value := of(self.results)) is not None:
+            if (
+                printed
+                and not (unless and unless(self.results))
+                and (value := of(self.results)) is not None
+            ):
                 yield quantity, value
 
 
 def equal_parts(subjects: Sequence[Subject], command: str) -> list[list[Subject]]:
     """Return cylinders, or pins and bearings, those together whose key values of a command are equal."""
-    having = [one for one in subjects if one.results]
+    having = [subject for subject in subjects if subject.results]
     if len(having) < 2:
         return [having]
 
@@ -155,7 +159,11 @@ _PARTS = {"bearings": "bearings", "stress": "throws"}
 
 @np.errstate(all="ignore")
 def report_on(
-    frame: Frame, machine: Machine, title: str, subjects: Sequence[Subject], notes: Iterable[str] = ()
+    frame: Frame,
+    machine: Machine,
+    title: str,
+    subjects: Sequence[Subject],
+    notes: Iterable[str] = (),
 ) -> Report:
     """Return the report on those of these subjects that have results; the last may be the whole machine.
 
@@ -167,15 +175,17 @@ def report_on(
     if frame.names:
         return _report_on_names(frame, machine, title, subjects)
     having = list[tuple[Subject, tuple[PlaceTable, ...], tuple[Column, ...], str]]()
-    for one in subjects:
-        tables = tuple(table.shown(frame.system) for table in one.tables)
-        if one.whole or one.at or tables or any(one.key_values(frame.command)):
-            having.append((one, tables, *_columns(frame, one)))
+    for subject in subjects:
+        tables = tuple(table.shown(frame.system) for table in subject.tables)
+        if subject.whole or subject.at or tables or any(subject.key_values(frame.command)):
+            having.append((subject, tables, *_columns(frame, subject)))
     printed = {column.id for _, _, columns, _ in having for column in columns}
     nowhere = [why for *_, why in having if why]
     for name in frame.columns or ():
         if name not in printed:
-            raise UsageError(f"--columns: {_absent(name, frame.command, [one for one, *_ in having])}")
+            raise UsageError(
+                f"--columns: {_absent(name, frame.command, [one for one, *_ in having])}"
+            )
     if nowhere and not printed:
         raise NoSolutionError(nowhere[0])
 
@@ -184,7 +194,9 @@ def report_on(
         Part(
             one.name,
             columns,
-            tuple(shown_key_values(one.key_values(frame.command), frame.system)) if with_values else (),
+            tuple(shown_key_values(one.key_values(frame.command), frame.system))
+            if with_values
+            else (),
             tuple(one.left_out) if frame.prose else (),
             tuple(one.warnings) if frame.prose else (),
             tables,
@@ -194,7 +206,11 @@ def report_on(
         for one, tables, columns, why in having
     ]
     # the balance has its own note on what it cannot compare
-    uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
+    uncompared = (
+        frame.compare
+        and frame.command != "balance"
+        and not any(id.endswith("_book") for id in printed)
+    )
     added = ([_UNCOMPARED] if uncompared else []) + [f"{why}." for why in nowhere]
     return Report(
         f"{machine.name}. {title}",
@@ -209,7 +225,9 @@ def report_on(
     )
 
 
-def _report_on_names(frame: Frame, machine: Machine, title: str, subjects: Sequence[Subject]) -> Report:
+def _report_on_names(
+    frame: Frame, machine: Machine, title: str, subjects: Sequence[Subject]
+) -> Report:
     """Return the report on the key values that are named, and nothing else but warnings.
 
     Raises UsageError for a name that is no key value of the command, and for a key value that the machine does not
@@ -277,7 +295,11 @@ class Functions(NamedTuple):
 
         Raises UsageError without such results, NoSolutionError if the machine jams, stalls, or vibrates without limit.
         """
-        found = self.own(case, frame, **options) if self.own else (self.subjects(case), self.notes(case))
+        found = (
+            self.own(case, frame, **options)
+            if self.own
+            else (self.subjects(case), self.notes(case))
+        )
         return report_on(frame, case.machine, self.title, *found)
 
 
@@ -290,30 +312,50 @@ def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
     except Nowhere as error:
         return (), str(error)
     known = subject.lists.columns(frame.command)
-    added = [one for one in known.values() if one.id == frame.over or (frame.compare and one.id.endswith("_book"))]
+    added = [
+        one
+        for one in known.values()
+        if one.id == frame.over or (frame.compare and one.id.endswith("_book"))
+    ]
     if frame.columns:
         chosen = [*(known[name] for name in frame.columns if name in known), *added]
     else:
-        usual = (one for one in known.values() if frame.command not in one.on_request or one in added)
+        usual = (
+            one for one in known.values() if frame.command not in one.on_request or one in added
+        )
         # what adds nothing to forces may be what motion is about
         elsewhere = subject.results and subject.results.command != frame.command
         chosen = [one for one in usual if elsewhere or subject.is_printed(one)]
-    return shown_columns(subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system), ""
+    return shown_columns(
+        subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system
+    ), ""
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     """Return the message for a column that does not exist, listing those that do."""
     known, key_values = every_quantity().columns(command), every_quantity().key_values(command)
-    states = [(one.lists.columns(command), one.at(np.zeros(1))) for one in subjects if one.at]
-    there = [one for id, one in known.items() if any(id in own and state[id] is not None for own, state in states)]
-    listed = ", ".join(one.id if one.id == one.symbol else f"{one.id} ({one.symbol})" for one in there)
+    states = [
+        (subject.lists.columns(command), subject.at(np.zeros(1)))
+        for subject in subjects
+        if subject.at
+    ]
+    there = [
+        one
+        for id, one in known.items()
+        if any(id in own and state[id] is not None for own, state in states)
+    ]
+    listed = ", ".join(
+        one.id if one.id == one.symbol else f"{one.id} ({one.symbol})" for one in there
+    )
     if name in known:
-        return f"'{name}' is left out for this machine" + (f", which has {listed}" if listed else "")
+        return f"'{name}' is left out for this machine" + (
+            f", which has {listed}" if listed else ""
+        )
     if found := called(name, key_values.values()):
         return f"'{name}' is a key value and no column; --key-values {found[0]} prints it"
     words = tuple(word for one in (*there, *known.values()) for word in (one.id, one.symbol))
     near = in_sentences(name, there) or did_you_mean(name, words)
-    return f"'{shown(name)}' is no column of kurbel {command}{near} (this machine has {listed or 'none'})"
+    return f"'{text_in_one_line(name)}' is no column of kurbel {command}{near} (this machine has {listed or 'none'})"
 
 
 def provenance(machine: Machine) -> Provenance:
@@ -334,11 +376,16 @@ def provenance(machine: Machine) -> Provenance:
 
 def too_large(quantity: Quantity) -> UsageError:
     """Return the error for a quantity that overflows."""
-    return UsageError(f"{quantity.id} is too large to compute with: check the numbers and units of the machine file")
+    return UsageError(
+        f"{quantity.id} is too large to compute with: check the numbers and units of the machine file"
+    )
 
 
 def shown_columns(
-    at: Callable[[Array], AtAngles], quantities: Sequence[Quantity], angles: Sequence[float], system: str
+    at: Callable[[Array], AtAngles],
+    quantities: Sequence[Quantity],
+    angles: Sequence[float],
+    system: str,
 ) -> tuple[Column, ...]:
     """Return those of these columns that the machine has, at crank angles (n,) in degrees; at: see `Subject`.
 
@@ -355,34 +402,51 @@ def shown_columns(
                 rows, everywhere = np.split(np.asarray(values, dtype=float), [-len(_EVERYWHERE)])
                 found.setdefault(quantity, []).append(rows)
                 sizes[quantity] = 0.0 if quantity.id == "phi" else float(np.abs(everywhere).max())
-    return tuple(shown_column(one, np.concatenate(found.pop(one)), system, sizes[one]) for one in [*found])
+    return tuple(
+        shown_column(one, np.concatenate(found.pop(one)), system, sizes[one]) for one in [*found]
+    )
 
 
 def shown_column(
-    quantity: Quantity, values: Sequence[float | None] | Array, system: str, size: float = 0.0, largest: float = 0.0
+    quantity: Quantity,
+    values: Sequence[float | None] | Array,
+    system: str,
+    size: float = 0.0,
+    largest: float = 0.0,
 ) -> Column:
     """Return the column of a quantity; values: (n,) in SI, None for no value; size: the largest value of its curve.
 
     largest: of all columns that are to have the same unit, in SI. Raises UsageError if a value is not finite.
     """
     numbers, kind = np.array(values, dtype=float), quantity.kind
-    lacking = [] if isinstance(values, np.ndarray) else [k for k, value in enumerate(values) if value is None]
+    lacking = (
+        []
+        if isinstance(values, np.ndarray)
+        else [k for k, value in enumerate(values) if value is None]
+    )
     numbers[lacking] = 0.0
     if not (np.isfinite(numbers).all() and np.isfinite(size)):
         raise too_large(quantity)
     own = max(numbers.max(initial=0.0), -numbers.min(initial=0.0))
     size = size if own <= _ROUNDING * size else 0.0
     unit = shown_unit(kind, system, max(size or own, largest))
-    given: array[float] | list[float | None] = array("d", (convert(numbers, kind, unit) + 0.0).tobytes())
+    given: array[float] | list[float | None] = array(
+        "d", (convert(numbers, kind, unit) + 0.0).tobytes()
+    )
     if lacking:
         given = [None if k in lacking else value for k, value in enumerate(given)]
     symbols = quantity.symbol, quantity.ascii_symbol
     return Column(
-        quantity.id, *symbols, quantity.marked(unit), given, quantity.text, size=float(convert(size, kind, unit))
+        quantity.id,
+        *symbols,
+        quantity.marked(unit),
+        given,
+        quantity.text,
+        size=float(convert(size, kind, unit)),
     )
 
 
-Row = tuple[tuple[str, ...], Mapping[str, float | None]]
+PlaceRow = tuple[tuple[str, ...], Mapping[str, float | None]]
 """A row of a table of places: its names, and its values in SI by the ids of their quantities."""
 
 
@@ -398,7 +462,7 @@ class Places(NamedTuple):
     title: str
     heads: tuple[str, ...]
     declared: Mapping[str, Quantity]
-    rows: Sequence[Row]
+    rows: Sequence[PlaceRow]
     headed: bool = False
     alone: int = 0
     in_note: bool = False
@@ -412,18 +476,31 @@ class Places(NamedTuple):
         }
         largest: dict[str, float] = {}
         for quantity, each in found.items() if self.alone else ():
-            largest[quantity.kind] = max(largest.get(quantity.kind, 0.0), *(abs(value or 0.0) for value in each))
+            largest[quantity.kind] = max(
+                largest.get(quantity.kind, 0.0), *(abs(value or 0.0) for value in each)
+            )
 
         columns = []
         for quantity, each in found.items():
             decimals = 3 if quantity.id == "distance" else None
             if quantity.id in ("order", "mode"):
-                needed = (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value)
+                needed = (
+                    0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value
+                )
                 decimals = max(needed, default=0)
             column = shown_column(quantity, each, system, largest=largest.get(quantity.kind, 0.0))
-            columns.append(column._replace(decimals=decimals, alone=0 if quantity.kind == "angle" else self.alone))
-        names = [names if self.headed else tuple(name.replace(" ", "_") for name in names) for names, _ in self.rows]
-        return PlaceTable(self.id, self.title, self.heads, tuple(names), tuple(columns), self.headed, self.in_note)
+            columns.append(
+                column._replace(
+                    decimals=decimals, alone=0 if quantity.kind == "angle" else self.alone
+                )
+            )
+        names = [
+            names if self.headed else tuple(name.replace(" ", "_") for name in names)
+            for names, _ in self.rows
+        ]
+        return PlaceTable(
+            self.id, self.title, self.heads, tuple(names), tuple(columns), self.headed, self.in_note
+        )
 
 
 def shown_key_values(found: Iterable[tuple[Quantity, object]], system: str) -> list[KeyValue]:
@@ -432,7 +509,9 @@ def shown_key_values(found: Iterable[tuple[Quantity, object]], system: str) -> l
     The maximum and the minimum of a column have the same unit. Raises UsageError if one is not finite.
     """
     given = tuple(found)
-    units = units_of([(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system)
+    units = units_of(
+        [(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system
+    )
     shown_values = []
     for (quantity, value), unit in zip(given, units):
         raw, at = number_of(value), value.degrees if isinstance(value, Extreme) else None
@@ -440,11 +519,22 @@ def shown_key_values(found: Iterable[tuple[Quantity, object]], system: str) -> l
         if not np.isfinite(each).all():
             raise too_large(quantity)
         numbers = tuple(float(convert(one, quantity.kind, unit)) + 0.0 for one in each)
-        number = numbers if isinstance(raw, tuple) else raw if isinstance(raw, int) else numbers[0]  # a count
+        number = (
+            numbers if isinstance(raw, tuple) else raw if isinstance(raw, int) else numbers[0]
+        )  # a count
         noise = any(map(quantity.is_noise, numbers))
         symbols = quantity.symbol, quantity.ascii_symbol
         shown_values.append(
-            KeyValue(quantity.id, *symbols, quantity.marked(unit), number, quantity.text, at, noise, quantity.heading),
+            KeyValue(
+                quantity.id,
+                *symbols,
+                quantity.marked(unit),
+                number,
+                quantity.text,
+                at,
+                noise,
+                quantity.heading,
+            ),
         )
     return shown_values
 
@@ -467,7 +557,9 @@ def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]
         assert isinstance(subject.results, CylinderForces)
         mechanism = subject.results.mechanism
         if mechanism.turns:
-            raise UsageError(f"--over x: the output of a {mechanism.name} turns on and has no stroke")
+            raise UsageError(
+                f"--over x: the output of a {mechanism.name} turns on and has no stroke"
+            )
         x = mechanism.stroke * fractions
         out = np.asarray(mechanism.crank_angles_at(x, True))
         back = np.asarray(mechanism.crank_angles_at(x[::-1], False))
@@ -495,11 +587,13 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
     They are exact except for rounding; the function raises Nowhere if there are none. Raises UsageError for a text that
     is no condition.
     """
-    name, equals, value = (part.strip() for part in plain(text).partition("="))
+    name, equals, value = (part.strip() for part in keyboard_text(text).partition("="))
     number = re.match(RATIO, value) or NUMBER.match(value)
     of = value[number.end() if number else 0 :].strip()
     if len(text) > LONGEST_VALUE or not (text.isprintable() and name and equals and (number or of)):
-        raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{shown(text)}'")
+        raise UsageError(
+            f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{text_in_one_line(text)}'"
+        )
     try:
         factor = parse_ratio(number.group()) if number else None
     except UnitError as error:
@@ -553,7 +647,9 @@ def _with_any_speed(subject: Subject, column: Quantity) -> Subject:
     At uniform rotation a velocity is a fraction of its largest at the same angles whatever the speed.
     """
     forces = subject.results
-    needs_speed = column.kind in _OF_SPEED and isinstance(forces, CylinderForces) and forces.omega is None
+    needs_speed = (
+        column.kind in _OF_SPEED and isinstance(forces, CylinderForces) and forces.omega is None
+    )
     if not needs_speed:
         return subject
     assert isinstance(forces, CylinderForces)
@@ -565,11 +661,15 @@ _ANY_SPEED = 1 / (2 * math.pi)
 """Revolutions per second: 1 rad/s."""
 
 
-def _value(subject: Subject, command: str, column: Quantity, factor: float | None, of: str, text: str) -> float:
+def _value(
+    subject: Subject, command: str, column: Quantity, factor: float | None, of: str, text: str
+) -> float:
     """Return the value in SI: a number with a unit of the column's kind, or a fraction of a key value."""
     if not of:
         if factor and column.kind != "ratio":
-            raise UsageError(f"--where: {text} has no unit; write for instance {example(column.kind)}")
+            raise UsageError(
+                f"--where: {text} has no unit; write for instance {kind_example(column.kind)}"
+            )
         return factor or 0.0
     try:
         up, down = unit_factor(of, column.kind)
@@ -577,9 +677,13 @@ def _value(subject: Subject, command: str, column: Quantity, factor: float | Non
         no_unit = error
     else:
         if factor is None:
-            raise UsageError(f"--where: {shown(of)} has no number before the unit; write {example(column.kind)}")
+            raise UsageError(
+                f"--where: {text_in_one_line(of)} has no number before the unit; write {kind_example(column.kind)}"
+            )
         return factor * up / down
-    known = {id: one for id, one in subject.lists.key_values(command).items() if one.kind == column.kind}
+    known = {
+        id: one for id, one in subject.lists.key_values(command).items() if one.kind == column.kind
+    }
     ids = called(of, known.values())
     value = number_of(subject.answer(known[ids[0]])) if ids else None
     if not ids:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
 from kurbel.declared.forms.figures import MACHINE, scoped
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantities import every_quantity
@@ -74,7 +74,9 @@ def choices_in(text: str, command: str, owners: Sequence[Owner]) -> list[Choice]
 
     def is_name(name: str) -> bool:
         scope, id = scoped(name)
-        return bool(called(name, declared.values())) or (scope in scopes and bool(called(id, declared.values())))
+        return bool(called(name, declared.values())) or (
+            scope in scopes and bool(called(id, declared.values()))
+        )
 
     choices = [_choice(name, command, declared, scopes) for name in split_names(text, is_name)]
     if not choices:
@@ -90,7 +92,9 @@ def _scopes(owners: Iterable[Owner]) -> list[str]:
     return list(dict.fromkeys(scopes))
 
 
-def _choice(name: str, command: str, declared: Mapping[str, Quantity], scopes: Sequence[str]) -> Choice:
+def _choice(
+    name: str, command: str, declared: Mapping[str, Quantity], scopes: Sequence[str]
+) -> Choice:
     """Return the key value that a name means; raises UsageError where it means none, or several."""
     scope, id = "", name
     if not called(name, declared.values()) and "." in name:
@@ -101,11 +105,13 @@ def _choice(name: str, command: str, declared: Mapping[str, Quantity], scopes: S
     if wrong := ambiguity(id, ids):
         raise UsageError(f"--key-values: {wrong}")
     if scope and not scopes:
-        raise UsageError(f"--key-values: {shown(name)}: every part has a table of its own here; write {ids[0]}")
+        raise UsageError(
+            f"--key-values: {text_in_one_line(name)}: every part has a table of its own here; write {ids[0]}"
+        )
     if scope and scope not in scopes:
         near = did_you_mean(scope, tuple(scopes))
         raise UsageError(
-            f"--key-values: {shown(name)}: kurbel {command} has no '{shown(scope)}'{near} (it has {', '.join(scopes)})"
+            f"--key-values: {text_in_one_line(name)}: kurbel {command} has no '{text_in_one_line(scope)}'{near} (it has {', '.join(scopes)})"
         )
     return Choice(scope, ids[0])
 
@@ -116,10 +122,10 @@ def _unknown(name: str, id: str, command: str, declared: Mapping[str, Quantity])
     elsewhere = called(id, every.all_key_values)
     if elsewhere:
         commands = " and ".join(f"kurbel {word}" for word in every.commands_of(elsewhere[0]))
-        return f"'{shown(name)}' is no key value of kurbel {command}; it is one of {commands}"
+        return f"'{text_in_one_line(name)}' is no key value of kurbel {command}; it is one of {commands}"
     columns = called(id, every.columns(command).values())
     if columns:
-        return f"'{shown(name)}' is a column and no key value; --columns {columns[0]} prints it"
+        return f"'{text_in_one_line(name)}' is a column and no key value; --columns {columns[0]} prints it"
     words = tuple(word for quantity in declared.values() for word in (quantity.id, quantity.symbol))
     near = in_sentences(id, declared.values()) or did_you_mean(id, words)
-    return f"'{shown(name)}' is no key value of kurbel {command}{near}"
+    return f"'{text_in_one_line(name)}' is no key value of kurbel {command}{near}"

@@ -7,10 +7,10 @@ from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, 
 from itertools import groupby
 from typing import NamedTuple, TypeVar, Union
 
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import NoSolutionError, UsageError
 
-Value = Union[float, int, None]
+CellValue = Union[float, int, None]
 
 
 class Column(NamedTuple):
@@ -27,7 +27,7 @@ class Column(NamedTuple):
     symbol: str
     ascii_symbol: str
     unit: str
-    values: Sequence[Value]
+    values: Sequence[CellValue]
     text: str = ""
     decimals: int | None = None
     marked: tuple[int, ...] = ()
@@ -45,7 +45,7 @@ class KeyValue(NamedTuple):
     symbol: str
     ascii_symbol: str
     unit: str
-    value: Value | tuple[float, ...]
+    value: CellValue | tuple[float, ...]
     text: str
     at_deg: float | None = None
     noise: bool = False
@@ -143,7 +143,9 @@ class Report(NamedTuple):
     @property
     def printed_tables(self) -> Iterator[PlaceTable]:
         """The tables of places that are printed for people."""
-        return (table for part in self.all_parts for table in part.place_tables if not table.in_note)
+        return (
+            table for part in self.all_parts for table in part.place_tables if not table.in_note
+        )
 
     def of_cylinder(self, name: str) -> "Report":
         """Return the results of one part, or of all parts of a cylinder, given by name or number.
@@ -156,7 +158,7 @@ class Report(NamedTuple):
         if not found:
             there = ", ".join(str(part.name) for part in self.parts) or "the whole machine only"
             raise UsageError(
-                f"--cylinder: kurbel {self.command} has no results of '{shown(name)}'; it has those of {there}"
+                f"--cylinder: kurbel {self.command} has no results of '{text_in_one_line(name)}'; it has those of {there}"
             )
         if nowhere := found[0].nowhere:
             raise NoSolutionError(nowhere)
@@ -165,7 +167,9 @@ class Report(NamedTuple):
 
     def changed(self, change: Callable[[Part], Part]) -> "Report":
         """Return the report with another part in place of each."""
-        return self._replace(parts=tuple(map(change, self.parts)), whole=self.whole and change(self.whole))
+        return self._replace(
+            parts=tuple(map(change, self.parts)), whole=self.whole and change(self.whole)
+        )
 
     def key_values_alone(self) -> "Report":
         """Return the report without its tables."""
@@ -181,8 +185,8 @@ def cylinder_meant(name: str, cylinders: Sequence[str]) -> str:
     if numbered.get(name, name) != name and name in cylinders:
         own = cylinders.index(name) + 1
         raise UsageError(
-            f"--cylinder: '{name}' is the name of cylinder {own} and the number of '{shown(numbered[name])}'; "
-            f"write '{own}' or '{shown(numbered[name])}'"
+            f"--cylinder: '{name}' is the name of cylinder {own} and the number of '{text_in_one_line(numbered[name])}'; "
+            f"write '{own}' or '{text_in_one_line(numbered[name])}'"
         )
     return numbered.get(name, name)
 
@@ -220,7 +224,9 @@ def check_rows(angles: float, parts: int) -> None:
         )
 
 
-def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts: int) -> Sequence[float]:
+def table_angles(
+    step: float, angles: Sequence[float] | None, end: float, parts: int
+) -> Sequence[float]:
     """Return the given angles, or 0, step, 2 step, … `end` in degrees; parts: see `check_rows`."""
     if angles is None:
         return stepped(step, end, parts)
@@ -247,10 +253,15 @@ def together(names: Sequence[str]) -> str:
         text = group[0]
         if len(group) > 1:
             # runs of numbers from the first to the last
-            numbers = [int(found.group(2)) for name in group if (found := _NUMBERED.fullmatch(name))]
+            numbers = [
+                int(found.group(2)) for name in group if (found := _NUMBERED.fullmatch(name))
+            ]
             runs = groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
             spans = [[number for _, number in run] for _, run in runs]
-            listed = (f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span)) for span in spans)
+            listed = (
+                f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span))
+                for span in spans
+            )
             stem = _NUMBERED.sub(r"\1", text).replace("cylinder ", "cylinders ")
             text = f"{stem}{', '.join(listed)}"
         texts.append(text)
@@ -280,9 +291,9 @@ def shown_once(report: Report) -> Report:
     def content(part: Part) -> Hashable:
         if bearings:
             return equal_loads(str(part.name), part.of, part.key_values), part.left_out
-        columns = [part.columns, *(one.columns for one in part.place_tables)]
+        columns = [part.columns, *(place_table.columns for place_table in part.place_tables)]
         curves = [(one.id, one.unit, _nine_digits(one.values)) for some in columns for one in some]
-        titles = [(one.title, one.names) for one in part.place_tables]
+        titles = [(place_table.title, place_table.names) for place_table in part.place_tables]
         return *curves, _figures(part.key_values), part.left_out, *titles
 
     groups = grouped(report.parts, content)
@@ -291,8 +302,14 @@ def shown_once(report: Report) -> Report:
     parts = []
     for group in groups:
         warnings = tuple(dict.fromkeys(warning for part in group for warning in part.warnings))
-        parts.append(group[0]._replace(name=together([str(part.name) for part in group]), warnings=warnings))
-    title = f"{report.title}: {parts[0].name}" if len(parts) == 1 and report.whole is None else report.title
+        parts.append(
+            group[0]._replace(name=together([str(part.name) for part in group]), warnings=warnings)
+        )
+    title = (
+        f"{report.title}: {parts[0].name}"
+        if len(parts) == 1 and report.whole is None
+        else report.title
+    )
     notes = (*report.notes, _SHIFTED) if bearings else report.notes
     return report._replace(parts=tuple(parts), title=title, notes=notes)
 
@@ -307,30 +324,46 @@ def first_selection(report: Report, ids: Collection[str], across: int, rows: int
     of_whole = report.whole is not None and report.whole.place_tables
 
     def chosen(part: Part) -> Part:
-        columns = [one for one in part.columns if not ids or one.id in ids or one is part.columns[0]]
+        columns = [
+            column
+            for column in part.columns
+            if not ids or column.id in ids or column is part.columns[0]
+        ]
         last = len(part.columns[0].values) - 1 if len(columns) > 1 else 0
         by = next((k for k in range(1, last) if last % k == 0 and last // k < across), 1)
-        tables = [one for one in part.place_tables if (one.id in ids if ids else not of_whole or part is report.whole)]
+        tables = [
+            place_table
+            for place_table in part.place_tables
+            if (place_table.id in ids if ids else not of_whole or part is report.whole)
+        ]
         return part._replace(
-            columns=tuple(one._replace(values=one.values[::by], marked=()) for one in columns) if last else (),
-            key_values=tuple(one for one in part.key_values if not ids or one.id in ids),
+            columns=tuple(
+                column._replace(values=column.values[::by], marked=()) for column in columns
+            )
+            if last
+            else (),
+            key_values=tuple(
+                key_value for key_value in part.key_values if not ids or key_value.id in ids
+            ),
             place_tables=tuple(
-                one._replace(
-                    names=one.names[:rows],
-                    columns=tuple(each._replace(values=each.values[:rows]) for each in one.columns),
+                table._replace(
+                    names=table.names[:rows],
+                    columns=tuple(
+                        column._replace(values=column.values[:rows]) for column in table.columns
+                    ),
                 )
-                for one in tables
+                for table in tables
             ),
             left_out=(),
         )
 
-    way_on = f"First selection. All columns, angles and key values: kurbel {report.command} FILE --all"
+    way_on = (
+        f"First selection. All columns, angles and key values: kurbel {report.command} FILE --all"
+    )
     return report.changed(chosen)._replace(notes=(), head=(*report.head, way_on))
 
 
-_SHIFTED = (
-    "Pins and bearings named together carry equal loads, each at its own crank angles; those of the first are shown."
-)
+_SHIFTED = "Pins and bearings named together carry equal loads, each at its own crank angles; those of the first are shown."
 
 
 def equal_loads(name: str, of: str, key_values: Iterable[KeyValue]) -> Hashable:
@@ -340,14 +373,18 @@ def equal_loads(name: str, of: str, key_values: Iterable[KeyValue]) -> Hashable:
 
 def _figures(key_values: Iterable[KeyValue]) -> Hashable:
     """Return the key values without their crank angles, to nine digits of the largest one of the same unit."""
-    given, by_unit = tuple(key_values), dict[str, list[Value]]()
+    given, by_unit = tuple(key_values), dict[str, list[CellValue]]()
     for one in given:
         if not one.noise:
-            by_unit.setdefault(one.unit, []).extend(one.value if isinstance(one.value, tuple) else (one.value,))
-    return *(one.id for one in given), *((unit, _nine_digits(values)) for unit, values in by_unit.items())
+            by_unit.setdefault(one.unit, []).extend(
+                one.value if isinstance(one.value, tuple) else (one.value,)
+            )
+    return *(one.id for one in given), *(
+        (unit, _nine_digits(values)) for unit, values in by_unit.items()
+    )
 
 
-def _nine_digits(values: Sequence[Value]) -> Hashable:
+def _nine_digits(values: Sequence[CellValue]) -> Hashable:
     """Return the largest of these values, and a hash of all relative to it, both rounded to nine digits."""
     largest = max((abs(value) for value in values if value is not None), default=0.0) or 1.0
     relative = tuple(None if value is None else round(value / largest, 9) for value in values)

@@ -71,14 +71,22 @@ class TraceReading:
         self.peak_at = self.vertex.place if self.vertex else self.top_at
         half_width = float(widths[self.p > (self.peak + self.low) / 2].sum()) / 2
         # of a trace that goes down to the vacuum, the ratio as over a good vacuum
-        self.ratio = (self.peak + setting.lift) / max(self.low + setting.lift, 0.2 * setting.ambient, 1.0)
+        self.ratio = (self.peak + setting.lift) / max(
+            self.low + setting.lift, 0.2 * setting.ambient, 1.0
+        )
         self.engine = half_width <= _NARROW and self.ratio > _ENGINE
         self.usual = _FIRED if setting.cycle == 720 else _TWO_STROKE
-        before, after = sides_of(float(trace.angles[top]), trace.angles, self.p + setting.lift, trace.period)
+        before, after = sides_of(
+            float(trace.angles[top]), trace.angles, self.p + setting.lift, trace.period
+        )
         alike = (_MOTORED_RATIO[0] * before <= after) & (after <= _MOTORED_RATIO[1] * before)
-        self.motored = bool(alike.all() and self.peak + setting.lift > _MOTORED_RISE * max(before[-1], after[-1]))
+        self.motored = bool(
+            alike.all() and self.peak + setting.lift > _MOTORED_RISE * max(before[-1], after[-1])
+        )
 
-    def exponent(self, stretch: tuple[float, float], later: float = 0.0, raised: float = 0.0) -> Exponent | None:
+    def exponent(
+        self, stretch: tuple[float, float], later: float = 0.0, raised: float = 0.0
+    ) -> Exponent | None:
         """Return the exponent of a stretch if the trace were so many degrees later, and raised by Pa."""
         absolute = self.p + self.setting.lift + raised
         return exponent(self.setting, self.trace.clearance, self.place + later, absolute, stretch)
@@ -89,7 +97,9 @@ class TraceReading:
         terms = weights * (self.p if pressures is None else pressures)
         return float(unless_cancelled(terms.sum(), np.abs(terms).sum(), _CANCELLED))
 
-    def then(self, angles: Array | None = None, pressures: Array | None = None, times: float = 1.0) -> str:
+    def then(
+        self, angles: Array | None = None, pressures: Array | None = None, times: float = 1.0
+    ) -> str:
         """Return p_i of other angles, or other pressures, or multiplied, and as it is."""
         now, then = in_bar(self.p_i()), in_bar(times * self.p_i(angles, pressures))
         return f"p_i is then {then} instead of {now}" if now != then else f"p_i stays {now}"
@@ -168,7 +178,9 @@ def _rounded_angles(reading: TraceReading) -> str:
     twins = int(np.count_nonzero(np.diff(angles) == 0))
     if not trace.files or twins < _TWICE * len(angles):
         return ""
-    zero = trace.as_written(trace.angle_zero) - (-trace.angles[-1] if trace.against else float(trace.angles[0]))
+    zero = trace.as_written(trace.angle_zero) - (
+        -trace.angles[-1] if trace.against else float(trace.angles[0])
+    )
     moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
     return (
         f"{twins} samples have the angle of the one before: rounded angles? write 'angle_step: {reading.step:g} deg'"
@@ -183,12 +195,20 @@ def _drift(reading: TraceReading) -> str:
     least = max(_RANGE * abs(float(p[0]) - reading.low), _LEAST * reading.setting.ambient)
     if trace.even:
         least = max(least, _SURE_OF_NOISE * noise_of(p[:-1]))
-    if trace.completed:  # what resolution, and the bend of the pressure, may do to a jump between lines
+    if (
+        trace.completed
+    ):  # what resolution, and the bend of the pressure, may do to a jump between lines
         bends = np.abs(np.concatenate((np.diff(p[-5:-1], 2), np.diff(p[:4], 2))))
         steps = np.abs(np.diff(p))
-        least = max(least, 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0, 3.0 * float(bends.max()))
+        least = max(
+            least,
+            1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0,
+            3.0 * float(bends.max()),
+        )
     (levelled,) = without_drift(trace, p[np.newaxis])
-    if abs(jump) <= least or abs(reading.p_i(pressures=levelled - p)) <= _WORTH_IT * abs(reading.p_i()):
+    if abs(jump) <= least or abs(reading.p_i(pressures=levelled - p)) <= _WORTH_IT * abs(
+        reading.p_i()
+    ):
         return ""
     return (
         f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write 'drift: linear', "
@@ -207,7 +227,15 @@ _TO_COMPRESSION = 0.25, 8.0
 _AIR = 1.32
 _NEAR_VACUUM = 0.1
 """Share of the ambient below which a low level cannot be an absolute pressure."""
-_UNITS = {"Pa": 1.0, "mbar": 1e2, "kPa": 1e3, "psi": 6894.757293168, "at": 98066.5, "bar": 1e5, "MPa": 1e6}
+_UNITS = {
+    "Pa": 1.0,
+    "mbar": 1e2,
+    "kPa": 1e3,
+    "psi": 6894.757293168,
+    "at": 98066.5,
+    "bar": 1e5,
+    "MPa": 1e6,
+}
 _POWERS = [(10.0**power, "", 0.5) for power in (-3, -2, -1, 1, 2, 3)]
 """Factors that convert no unit into another, with how much better, in logarithms, such a one must fit."""
 _SAME_UNIT = 0.05
@@ -235,7 +263,10 @@ def _unit(reading: TraceReading) -> str:
     least = _SMALLEST_PEAK + ambient if setting.cycle == 720 and setting.head_end else 0.0
     if trace.clearance:
         compressed = ambient * (1 + 1 / trace.clearance) ** _AIR
-        least, most = _TO_COMPRESSION[0] * compressed, max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK)
+        least, most = (
+            _TO_COMPRESSION[0] * compressed,
+            max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK),
+        )
         can = f"compression gives about {in_bar(compressed)}"
 
     # a pegged trace keeps its level in whatever unit
@@ -259,7 +290,9 @@ def _unit(reading: TraceReading) -> str:
         return abs(math.log(peak)) + abs(math.log(level))
 
     units = [(size / trace.unit, f" (unit: {name} fits)", 0.0) for name, size in _UNITS.items()]
-    usable = [one for one in (*units, *_POWERS) if abs(one[0] - 1) > _SAME_UNIT and in_range(one[0])]
+    usable = [
+        one for one in (*units, *_POWERS) if abs(one[0] - 1) > _SAME_UNIT and in_range(one[0])
+    ]
     # of what no unit makes an engine, a peak that no cylinder has is reported nevertheless
     others = [one for one in usable if compresses(one[0])] or ([] if in_range(1.0) else usable)
     if (in_range(1.0) and compresses(1.0)) or not others:
@@ -285,18 +318,34 @@ _AIMED = -2.0, 30.0
 """Where a peak is to be after quarter turns."""
 _USUAL = 8.0
 """Degrees after the dead centre at which fired engines peak, more or less."""
-_MOTORED_LEAD = 1.5  # deg; heat loss and leakage put a motored peak up to about 1° before the dead centre
-_MOTORED_SEARCH = -10.0, 30.0  # deg after the dead centre; what peaks elsewhere is a compressor or pump
+_MOTORED_LEAD = (
+    1.5  # deg; heat loss and leakage put a motored peak up to about 1° before the dead centre
+)
+_MOTORED_SEARCH = (
+    -10.0,
+    30.0,
+)  # deg after the dead centre; what peaks elsewhere is a compressor or pump
 _SURE = 3.0  # standard errors of the place of the peak, and what a crooked peak may be off
 _OFF = 0.1  # deg
 
 
 def _backward(reading: TraceReading) -> str:
     peak_at, dead_centre = reading.peak_at, reading.setting.own_dead_centre
-    judged = reading.engine and (reading.setting.cycle == 720 or reading.trace.clearance is not None)
-    early = -60.0 < peak_at < -_MOTORED_LEAD - reading.step and reading.usual[0] <= -peak_at <= reading.usual[1]
+    judged = reading.engine and (
+        reading.setting.cycle == 720 or reading.trace.clearance is not None
+    )
+    early = (
+        -60.0 < peak_at < -_MOTORED_LEAD - reading.step
+        and reading.usual[0] <= -peak_at <= reading.usual[1]
+    )
     turned = 2 * dead_centre - reading.angles[::-1], reading.p[::-1]
-    if not judged or not early or reading.motored or reading.p_i() >= 0 or reading.p_i(*turned) <= 0:
+    if (
+        not judged
+        or not early
+        or reading.motored
+        or reading.p_i() >= 0
+        or reading.p_i(*turned) <= 0
+    ):
         return ""
     return (
         f"the peak is {-peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
@@ -311,7 +360,9 @@ def _peak_elsewhere(reading: TraceReading) -> str:
     later = 90.0 * round((peak_at - _USUAL) / 90.0)
     if reading.motored:
         later = peak_at
-    elif not _AIMED[0] <= peak_at - later <= _AIMED[1]:  # by quarter turns, or else to where such a peak usually is
+    elif (
+        not _AIMED[0] <= peak_at - later <= _AIMED[1]
+    ):  # by quarter turns, or else to where such a peak usually is
         later = round(zero + peak_at - _USUAL) - zero
     key, effect = reading.put_later(later)
     where = "firing dead centre" if cycle == 720 else "dead centre"
@@ -356,14 +407,18 @@ def _level(reading: TraceReading) -> str:
     stays = f"p_i stays, P changes by {in_bar(setting.ambient)} times the area"
     vacuum = 0.0 if setting.absolute else -setting.ambient
     if setting.absolute and -_BELOW * setting.ambient <= low < _NEAR_VACUUM * setting.ambient:
-        return f"{seen} absolute: these look like gauge pressures; write 'pressures: gauge'; {stays}"
+        return (
+            f"{seen} absolute: these look like gauge pressures; write 'pressures: gauge'; {stays}"
+        )
     if low < vacuum:
         remedy = "correct 'pegging'" if reading.trace.pegging else "write 'pegging: ambient'"
         return f"{seen}, the perfect vacuum being at {in_bar(vacuum)}; {remedy}; {stays}"
     near = _NEAR_AMBIENT[0] < low / max(setting.ambient, 1.0) < _NEAR_AMBIENT[1]
     if setting.absolute or not near or _is_sensible(reading.exponent(COMPRESSION)):
         return ""
-    known = "" if reading.trace.clearance else "; a 'compression_ratio' would tell by the compression"
+    known = (
+        "" if reading.trace.clearance else "; a 'compression_ratio' would tell by the compression"
+    )
     return f"{seen} gauge, about the ambient: absolute? Then write 'pressures: absolute'; {stays}{known}"
 
 
@@ -381,23 +436,35 @@ def _exponents(reading: TraceReading) -> str:
     compression, expansion = reading.exponent(COMPRESSION), reading.exponent(EXPANSION)
     if compression is None or not reading.engine:
         return ""
-    seen, sensible = f"its compression goes by p V^{compression.value:.3g}", _is_sensible(compression)
+    seen, sensible = (
+        f"its compression goes by p V^{compression.value:.3g}",
+        _is_sensible(compression),
+    )
     sure = _APART + 2 * math.hypot(compression.error, expansion.error if expansion else 0.0)
     parted = expansion if expansion and abs(compression.value - expansion.value) > sure else None
     if sensible and not parted:
         return ""
-    seen += f" and its expansion by p V^{parted.value:.3g}" if parted else ", where air has 1.2 to 1.4"
+    seen += (
+        f" and its expansion by p V^{parted.value:.3g}" if parted else ", where air has 1.2 to 1.4"
+    )
     now, next_to = _apart(reading, 0.0), _apart(reading, 1.0)
     later = now / (now - next_to or math.nan)  # where both exponents would be one
     if abs(later) <= _LATEST and _is_sensible(reading.exponent(COMPRESSION, later)):
         key, effect = reading.put_later(-later)
         return f"{seen}: a dead centre {abs(later):.2g} deg off does that; write {key}; {effect}"
-    return "" if sensible else f"{seen}: correct the level ('pegging', 'offset'; p_i stays), or the clearance"
+    return (
+        ""
+        if sensible
+        else f"{seen}: correct the level ('pegging', 'offset'; p_i stays), or the clearance"
+    )
 
 
 def _apart(reading: TraceReading, later: float) -> float:
     """Return the exponent of the compression less that of the expansion, so many degrees later; nan without one."""
-    compression, expansion = reading.exponent(COMPRESSION, later), reading.exponent(EXPANSION, later)
+    compression, expansion = (
+        reading.exponent(COMPRESSION, later),
+        reading.exponent(EXPANSION, later),
+    )
     return compression.value - expansion.value if compression and expansion else math.nan
 
 

@@ -76,10 +76,16 @@ class Trace(Indivisible):
     scale: float = 1.0
 
     def __post_init__(self) -> None:
-        alike = self.angles.ndim == 1 and len(self.angles) > 1 and self.samples.shape[1:] == self.angles.shape
+        alike = (
+            self.angles.ndim == 1
+            and len(self.angles) > 1
+            and self.samples.shape[1:] == self.angles.shape
+        )
         rising = alike and (np.diff(self.angles) >= 0).all() and self.period  # nan is not
         if not rising or not np.isfinite(self.samples).all():
-            refused("a trace has as many finite pressures as angles, which rise over one whole cycle, 360 or 720 deg")
+            refused(
+                "a trace has as many finite pressures as angles, which rise over one whole cycle, 360 or 720 deg"
+            )
 
     @cached_property
     def pressures(self) -> Array:
@@ -177,7 +183,9 @@ class Setting(NamedTuple):
     def stroke_fraction(self, after: Array) -> Array:
         """Return the fraction of the stroke from the chamber's smallest volume, so many degrees after it."""
         angle = CrankAngle.of(after + self.own_dead_centre)
-        displaced = (self.mechanism.coordinate(angle) - self.mechanism.start) / self.mechanism.stroke
+        displaced = (
+            self.mechanism.coordinate(angle) - self.mechanism.start
+        ) / self.mechanism.stroke
         return displaced if self.head_end else 1 - displaced
 
 
@@ -194,14 +202,20 @@ def corrected(trace: Trace, setting: Setting) -> Array:
 
     What is added to a cycle gives it the known pressure where that is known.
     """
-    samples, pegging = without_drift(trace, trace.samples) if trace.level else trace.samples, trace.pegging
+    samples, pegging = (
+        without_drift(trace, trace.samples) if trace.level else trace.samples,
+        trace.pegging,
+    )
     if pegging is None:
         return samples
     inner, outer = setting.mechanism.dead_centres()
     if isinstance(pegging, KnownLevel):
         angle, pressure = inner + pegging.angle, pegging.pressure
     else:
-        angle, pressure = (outer if setting.head_end else inner) + setting.cycle - 360.0, setting.base
+        angle, pressure = (
+            (outer if setting.head_end else inner) + setting.cycle - 360.0,
+            setting.base,
+        )
     turned = trace.angles + setting.shift(trace) - angle
     away = np.abs(np.remainder(turned + trace.period / 2, trace.period) - trace.period / 2)
     near = away <= max(_AROUND, float(away.min()))
@@ -212,7 +226,9 @@ def without_drift(trace: Trace, samples: Array) -> Array:
     """Return samples (m, n) from each of which a line over the cycle is taken off so that it closes."""
     share = (trace.angles - trace.angles[0]) / trace.period
     levelled = samples + drift_of(trace, samples)[:, np.newaxis] * share
-    return np.concatenate((levelled[:, :-1], levelled[:, :1]), axis=1) if trace.completed else levelled
+    return (
+        np.concatenate((levelled[:, :-1], levelled[:, :1]), axis=1) if trace.completed else levelled
+    )
 
 
 def drift_of(trace: Trace, samples: Array) -> Array:
@@ -264,7 +280,11 @@ class Exponent(NamedTuple):
 
 
 def exponent(
-    setting: Setting, clearance: float | None, after: Array, absolute: Array, stretch: tuple[float, float]
+    setting: Setting,
+    clearance: float | None,
+    after: Array,
+    absolute: Array,
+    stretch: tuple[float, float],
 ) -> Exponent | None:
     """Return −d ln p/d ln V by least squares over a stretch of angle.
 
@@ -317,7 +337,9 @@ def parabola_peak(places: Array, values: Array, top: float, width: float) -> Pea
             return None
         top = top - slope / (2 * bend)
     by_parameters = np.array([slope / (2 * bend**2), -1 / (2 * bend), 0.0])
-    return Peak(float(top), math.sqrt(max(0.0, by_parameters @ covariance @ by_parameters)), len(along))
+    return Peak(
+        float(top), math.sqrt(max(0.0, by_parameters @ covariance @ by_parameters)), len(along)
+    )
 
 
 def sides_of(top: float, angles: Array, pressures: Array, period: float) -> Array:
@@ -332,23 +354,32 @@ def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
     angles (n,) in degrees over one lap; laps (m, n) in Pa, of which the mean is taken, of turns in pairs.
     """
     if len(laps) % 2 == 0:
-        angles, laps = np.concatenate((angles[:-1], angles + angles[-1] - angles[0])), joined_in_pairs(laps)
+        angles, laps = (
+            np.concatenate((angles[:-1], angles + angles[-1] - angles[0])),
+            joined_in_pairs(laps),
+        )
     pressures, period = laps.mean(axis=0)[:-1], float(angles[-1] - angles[0])
     top = float(angles[int(np.argmax(pressures))])
     places = np.remainder(angles[:-1] - top + period / 2, period) - period / 2
     if np.count_nonzero(np.abs(places) <= _HALF / 2) < _FEWEST:
-        refused(f"has fewer than five samples within {_HALF / 2:g} deg of its peak; measure it finer")
+        refused(
+            f"has fewer than five samples within {_HALF / 2:g} deg of its peak; measure it finer"
+        )
     whole = parabola_peak(places, pressures, 0.0, _HALF)
     if whole is None:
         refused("is no motored trace: it has no peak that a parabola could be laid through")
     low = float(np.quantile(pressures, _LOW))
     before, after = sides_of(whole.place, places, pressures, period) - low
     if not ((_ALIKE[0] * before <= after) & (after <= _ALIKE[1] * before)).all():
-        refused("is no motored trace: before and after its peak the pressures differ; name one without combustion")
+        refused(
+            "is no motored trace: before and after its peak the pressures differ; name one without combustion"
+        )
     half = parabola_peak(places, pressures, whole.place, _HALF / 2)
     # of a peak that is no parabola the half of the samples gives another place; where their noise hides it, its
     # standard error, √8 times that of all, is the bound
-    doubt = math.hypot(whole.error, math.sqrt(8) * whole.error if half is None else whole.place - half.place)
+    doubt = math.hypot(
+        whole.error, math.sqrt(8) * whole.error if half is None else whole.place - half.place
+    )
     return whole._replace(place=top + whole.place), doubt
 
 
@@ -367,14 +398,18 @@ def by_angle(setting: Setting, derivative: Callable[[CrankAngle], Number], degre
     return found if setting.head_end else -found
 
 
-def by_trapezoid(setting: Setting, angles: Array, derivative: Callable[[CrankAngle], Number]) -> Array:
+def by_trapezoid(
+    setting: Setting, angles: Array, derivative: Callable[[CrankAngle], Number]
+) -> Array:
     """Return the weights of the trapezoid rule at crank angles (n,) in degrees; derivative: dx/dφ or d²x/dφ²."""
     steps = np.radians(np.diff(angles)) / 2
     widths = np.append(steps, 0.0) + np.append(0.0, steps)
     return widths * by_angle(setting, derivative, angles)
 
 
-def by_straight_lines(setting: Setting, angles: Array, begin: float = 0.0, turn: float = 720.0) -> Array:
+def by_straight_lines(
+    setting: Setting, angles: Array, begin: float = 0.0, turn: float = 720.0
+) -> Array:
     """Return the weights of samples at crank angles (n,) in degrees over one cycle in ∫ p dz along straight lines.
 
     begin: a dead centre from which it is taken over `turn` degrees, at most over the cycle.
@@ -385,7 +420,9 @@ def by_straight_lines(setting: Setting, angles: Array, begin: float = 0.0, turn:
     breaks = np.append(along, turns - angles[0])
     nodes = 16 if len(breaks) < _DENSE else 10
     whole = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
-    pieces, (slopes,) = refined(whole, lambda some: by_angle(setting, slope, some.degrees + angles[0])[None])
+    pieces, (slopes,) = refined(
+        whole, lambda some: by_angle(setting, slope, some.degrees + angles[0])[None]
+    )
 
     line = np.searchsorted(along, pieces.middle, side="right") - 1
     share = (pieces.degrees - along[line]) / np.diff(along)[line]

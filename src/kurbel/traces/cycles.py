@@ -18,7 +18,7 @@ from kurbel.traces.correct import PERIODS, period_of
 from kurbel.traces.read import LIMITS, Layout, read_table
 
 
-class Samples(NamedTuple):
+class Laps(NamedTuple):
     """Laps of a trace in order: of one cycle each, or of one turn each if only the machine file decides the cycle.
 
     angles (n,) in degrees, rising over a period; values (m, n) of m laps; notes: what was corrected; completed: the
@@ -45,17 +45,23 @@ class Recording:
 
     def keep(self, which: slice | Indices) -> None:
         """Keep only these samples, in the order of their indices."""
-        self.angles, self.values, self.rows = self.angles[which], self.values[:, which], self.rows[which]
+        self.angles, self.values, self.rows = (
+            self.angles[which],
+            self.values[:, which],
+            self.rows[which],
+        )
 
     def refuse(self, index: int, message: str, fault: type[Fault] = Fault) -> NoReturn:
         """Raise RuleError with what is wrong with a sample."""
         place = self._place(int(self.rows[index]))
-        raise RuleError(fault(place.path, f"{place.message}: {message}" if place.message else message))
+        raise RuleError(
+            fault(place.path, f"{place.message}: {message}" if place.message else message)
+        )
 
 
 def samples_of_file(
     file: str, layout: Layout, kind: str, base: Callable[[Array], Array], against: bool = False
-) -> Samples:
+) -> Laps:
     """Return the laps of what was measured from a file; raises RuleError.
 
     kind: of the values, pressure or torque; base: turns figures of the file into the base of their unit; against:
@@ -75,8 +81,12 @@ def samples_of_file(
 
 
 def whole_cycles(
-    angles: Array, values: Array, place: Callable[[int], Fault], kind: str = "pressure", against: bool = False
-) -> Samples:
+    angles: Array,
+    values: Array,
+    place: Callable[[int], Fault],
+    kind: str = "pressure",
+    against: bool = False,
+) -> Laps:
     """Return samples closed to whole cycles; raises RuleError for what cannot be.
 
     angles (n,) in degrees; values (k, n) in the base of their kind, a row for each measured column; place: names a row;
@@ -103,7 +113,9 @@ def _refuse_no_numbers(recording: Recording, kind: str) -> None:
         size = float(sizes[largest])
         if not math.isfinite(size):
             fault = NotANumber if math.isnan(size) else Fault
-            recording.refuse(largest, f"the {what} is {size}, not a number; leave such rows out", fault)
+            recording.refuse(
+                largest, f"the {what} is {size}, not a number; leave such rows out", fault
+            )
         if "large" in (beyond := out_of_size(size, what)):
             recording.refuse(largest, f"the {what} {size:g} {beyond}")
 
@@ -115,7 +127,11 @@ def _put_in_order(recording: Recording) -> None:
     """
     steps = np.diff(recording.angles)
     falls = np.flatnonzero(steps < 0)
-    if len(falls) == 1 and 180 < -steps[falls[0]] <= PERIODS[-1] and recording.angles[-1] <= recording.angles[0]:
+    if (
+        len(falls) == 1
+        and 180 < -steps[falls[0]] <= PERIODS[-1]
+        and recording.angles[-1] <= recording.angles[0]
+    ):
         first = int(falls[0]) + 1
         recording.keep(np.roll(np.arange(len(recording.rows)), -first))
         recording.notes.append(
@@ -132,7 +148,8 @@ def _put_in_order(recording: Recording) -> None:
     if len(back):
         i = int(back[0]) + 1
         recording.refuse(
-            i, f"{angles[i]:.10g} deg after {angles[i - 1]:.10g} deg; put the points in order of the angle"
+            i,
+            f"{angles[i]:.10g} deg after {angles[i - 1]:.10g} deg; put the points in order of the angle",
         )
     if not np.ptp(angles):
         recording.refuse(0, "a trace needs samples at two angles or more")
@@ -160,7 +177,9 @@ def _lay_over_one_lap(recording: Recording) -> None:
     lap = _count_on(recording) if begins_anew else PERIODS[0]
     angles, step = recording.angles, usual_step(recording.angles)
     laps = int((angles[-1] - angles[0] + 1.5 * min(step, lap / 20)) // lap)
-    bounds = np.searchsorted(angles, angles[0] + lap * np.arange(laps + 1) - min(1e-6 * lap, step / 2))
+    bounds = np.searchsorted(
+        angles, angles[0] + lap * np.arange(laps + 1) - min(1e-6 * lap, step / 2)
+    )
     if laps < 2 or (np.diff(bounds) < 2).any():
         return
     _refuse_large_holes(recording, angles)
@@ -168,19 +187,28 @@ def _lay_over_one_lap(recording: Recording) -> None:
     count, end = int(bounds[1]), int(bounds[-1])
     wanted = angles[:count] + lap * np.arange(laps)[:, np.newaxis]
     even = (np.diff(bounds) == count).all()
-    if even and np.abs(angles[:end].reshape(laps, count) - wanted).max() <= _SAME_ANGLE * lap / count:
+    if (
+        even
+        and np.abs(angles[:end].reshape(laps, count) - wanted).max() <= _SAME_ANGLE * lap / count
+    ):
         each = recording.values[:, :end].reshape(-1, count)
     else:
         each = np.concatenate([np.interp(wanted, angles, column) for column in recording.values])
     swing = each - each.mean()
-    if not begins_anew and len(each) > 2 and (swing[2:] * swing[:-2]).mean() < _LEAST_ALIKE * (swing**2).mean():
+    if (
+        not begins_anew
+        and len(each) > 2
+        and (swing[2:] * swing[:-2]).mean() < _LEAST_ALIKE * (swing**2).mean()
+    ):
         message = (
             f"the angle counts on over {len(each)} turns that are not alike; if it numbers samples, write how far "
             f"apart they are, such as 'angle_step: {720 / len(angles):.4g} deg' for one cycle of 720 deg"
         )
         recording.refuse(0, message)
     if len(angles) - end > _REST * count:
-        recording.notes.append(f"the {len(angles) - end} samples after lap {laps} of {lap:g} deg are left out")
+        recording.notes.append(
+            f"the {len(angles) - end} samples after lap {laps} of {lap:g} deg are left out"
+        )
     recording.keep(slice(count))
     recording.values = each
 
@@ -194,7 +222,9 @@ def _count_on(recording: Recording) -> float:
     lap = period_of(span)
     if not lap:
         turn = "a turn has 360, a four-stroke cycle 720 deg: other units?"
-        recording.refuse(int(np.argmax(falls)) + 1, f"the angle begins anew after {span:.10g} deg; {turn}")
+        recording.refuse(
+            int(np.argmax(falls)) + 1, f"the angle begins anew after {span:.10g} deg; {turn}"
+        )
     recording.angles = recording.angles + lap * np.append(0, np.cumsum(falls))
     closing = falls & (np.diff(recording.angles) <= 1e-9 * lap)
     recording.keep(np.append(~closing, True))
@@ -227,7 +257,7 @@ def _leave_out_twins(recording: Recording) -> None:
         recording.notes.append(f"{np.count_nonzero(same)} samples given twice count once")
 
 
-def _closed(recording: Recording) -> Samples:
+def _closed(recording: Recording) -> Laps:
     """Close the cycle with the first sample if only the last one is missing; raises RuleError for large gaps."""
     angles, values = recording.angles, recording.values
     span = float(np.ptp(angles))
@@ -235,11 +265,17 @@ def _closed(recording: Recording) -> Samples:
     if not period:
         recording.refuse(-1, f"the samples run over {span:g} deg; cut whole cycles out")
     if len(angles) > MOST_POINTS:
-        recording.refuse(MOST_POINTS, f"one cycle has more than {MOST_POINTS} samples; thin them out{LIMITS}")
+        recording.refuse(
+            MOST_POINTS, f"one cycle has more than {MOST_POINTS} samples; thin them out{LIMITS}"
+        )
     end = float(angles[0]) + period
     missing = end - float(angles[-1])
     if missing > 1.5 * usual_step(angles):
-        other = "; are these times? Then write 'angle_unit: s' and 'recorded_speed: 1500 rpm', say" if span < 10 else ""
+        other = (
+            "; are these times? Then write 'angle_unit: s' and 'recorded_speed: 1500 rpm', say"
+            if span < 10
+            else ""
+        )
         if min(abs(span - 2 * math.pi), abs(span / 2 - 2 * math.pi)) < 0.2:
             other = "; are these radians? Then write 'angle_unit: rad'"
         recording.refuse(-1, _HOLE.format(angles[-1], end) + other)
@@ -249,8 +285,11 @@ def _closed(recording: Recording) -> Samples:
     angles = np.append(angles if completed else angles[:-1], end)
     _refuse_large_holes(recording, angles)
     wide = np.flatnonzero(np.diff(angles) > _WIDE * usual_step(angles))[:5].tolist()
-    holes = (f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; a straight line joins them" for i in wide)
-    return Samples(angles, values, (*recording.notes, *holes), completed)
+    holes = (
+        f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; a straight line joins them"
+        for i in wide
+    )
+    return Laps(angles, values, (*recording.notes, *holes), completed)
 
 
 def _refuse_large_holes(recording: Recording, angles: Array) -> None:
@@ -258,7 +297,9 @@ def _refuse_large_holes(recording: Recording, angles: Array) -> None:
     steps = np.diff(angles)
     given = np.sort(steps[steps > 0])
     median = float(given[len(given) // 2])
-    wide = np.flatnonzero(steps > min(max(degrees, times * median) for degrees, times in _LARGE_HOLES))
+    wide = np.flatnonzero(
+        steps > min(max(degrees, times * median) for degrees, times in _LARGE_HOLES)
+    )
     if len(wide):
         i = int(wide[0])
         recording.refuse(i, _HOLE.format(angles[i], angles[i + 1]))

@@ -10,7 +10,15 @@ from kurbel.crank_angle import within_cycle
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
-from kurbel.traces.correct import Setting, Trace, by_straight_lines, by_trapezoid, corrected, noise_of, work_weights
+from kurbel.traces.correct import (
+    Setting,
+    Trace,
+    by_straight_lines,
+    by_trapezoid,
+    corrected,
+    noise_of,
+    work_weights,
+)
 
 _CHORD = 1.0
 """Degrees over which a rate of pressure rise is measured: between two samples noise would dominate."""
@@ -31,8 +39,12 @@ class TracePressure:
         self.each = corrected(self.trace, setting)
         self.pressures = np.asarray(self.each.mean(axis=0))
         self._p, widths = self.pressures - setting.base, np.diff(self.angles)
-        self._gradients = np.divide(np.diff(self._p), widths, out=np.zeros_like(widths), where=widths > 0)
-        self.starts = Angles(np.zeros(len(widths), dtype=np.intp), within_cycle(self.angles[:-1], setting.cycle))
+        self._gradients = np.divide(
+            np.diff(self._p), widths, out=np.zeros_like(widths), where=widths > 0
+        )
+        self.starts = Angles(
+            np.zeros(len(widths), dtype=np.intp), within_cycle(self.angles[:-1], setting.cycle)
+        )
 
     @cached_property
     def noise(self) -> float:
@@ -41,15 +53,22 @@ class TracePressure:
 
     def at(self, degrees: Array, within: Array) -> Array:
         """Return the gauge pressure in Pa at crank angles in degrees, on the lines that hold `within` (n,)."""
-        along, turned = self.angles - self.angles[0], within_cycle(within - self.angles[0], self.setting.cycle)
-        line = np.minimum(np.searchsorted(along, turned, side="right") - 1, len(self._gradients) - 1)
+        along, turned = (
+            self.angles - self.angles[0],
+            within_cycle(within - self.angles[0], self.setting.cycle),
+        )
+        line = np.minimum(
+            np.searchsorted(along, turned, side="right") - 1, len(self._gradients) - 1
+        )
         return self._p[line] + self._gradients[line] * (turned - along[line] + (degrees - within))
 
     @property
     def highest(self) -> Extreme:
         """The highest gauge pressure in Pa, and the first crank angle that has it: at a sample."""
         best = self._p.max()
-        return Extreme(float(best), float(within_cycle(self.angles[self._p == best], self.setting.cycle).min()))
+        return Extreme(
+            float(best), float(within_cycle(self.angles[self._p == best], self.setting.cycle).min())
+        )
 
     # the rise of pressure
 
@@ -65,7 +84,9 @@ class TracePressure:
         """
         middles = np.concatenate((self.angles - _CHORD / 2, self.angles + _CHORD / 2))
         along, cycle = self.angles - self.angles[0], self.setting.cycle
-        ahead, behind = (within_cycle(middles + way - self.angles[0], cycle) for way in (_CHORD / 2, -_CHORD / 2))
+        ahead, behind = (
+            within_cycle(middles + way - self.angles[0], cycle) for way in (_CHORD / 2, -_CHORD / 2)
+        )
         found = [np.interp(ahead, along, one) - np.interp(behind, along, one) for one in cycles]
         return np.stack(found) / _CHORD, within_cycle(middles, cycle)
 
@@ -101,4 +122,6 @@ class TracePressure:
         if self.setting.cycle == 360:
             return None
         inner, outer = self.setting.mechanism.dead_centres()
-        return by_straight_lines(self.setting, self.angles, outer if self.setting.head_end else inner + 360.0, 360.0)
+        return by_straight_lines(
+            self.setting, self.angles, outer if self.setting.head_end else inner + 360.0, 360.0
+        )

@@ -36,7 +36,9 @@ SECONDS = {"s": 1.0, "ms": 1e-3}
 """Unit of time in the column of angles -> seconds."""
 _FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
 """A possible figure: messages show nothing else of a file, since it may be a different file with secrets."""
-_NUMBER = re.compile(r"[-+]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE | re.ASCII)
+_NUMBER = re.compile(
+    r"[-+]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE | re.ASCII
+)
 _SPLIT_DECIMALS = re.compile(r"^[^#\n]*,[0-9]+,0[0-9][^#\n]*", re.MULTILINE)
 _QUOTED = re.compile(r'"([^"\n]*)"')
 
@@ -75,7 +77,9 @@ class Layout(NamedTuple):
 
         def unquoted(found: re.Match[str]) -> str:
             cell = found[1].strip().replace(DECIMALS[self.decimal], ".")
-            return found[0] if DELIMITERS[self.delimiter] in cell else cell  # without its marks it would be two
+            return (
+                found[0] if DELIMITERS[self.delimiter] in cell else cell
+            )  # without its marks it would be two
 
         if '"' in text:
             text = _QUOTED.sub(unquoted, text)
@@ -83,8 +87,12 @@ class Layout(NamedTuple):
 
     def read(self, line: str) -> tuple[list[str], int]:
         """Return the cells of a line, and the first wanted column that has no number; 0 for a row of figures."""
-        cells = [cell.strip() for cell in self.tidied(line.partition("#")[0].strip()).split(self.between)]
-        bad = (one for one in self.wanted if one > len(cells) or not _NUMBER.fullmatch(cells[one - 1]))
+        cells = [
+            cell.strip() for cell in self.tidied(line.partition("#")[0].strip()).split(self.between)
+        ]
+        bad = (
+            one for one in self.wanted if one > len(cells) or not _NUMBER.fullmatch(cells[one - 1])
+        )
         return cells, next(bad, 0)
 
 
@@ -95,7 +103,10 @@ def read_table(file: str, layout: Layout) -> tuple[Array, Array, Callable[[int],
     """
     text = text_of(file)
     if layout.delimiter == layout.decimal and '"' not in text:
-        refused("a comma cannot be both in numbers and between columns; write 'delimiter: semicolon'", "decimal")
+        refused(
+            "a comma cannot be both in numbers and between columns; write 'delimiter: semicolon'",
+            "decimal",
+        )
     numbers = _numbers(text, layout)
     if not numbers.size:
         lines = "line" if layout.skip_rows == 1 else f"{layout.skip_rows} lines"
@@ -186,14 +197,19 @@ def text_of(file: str) -> str:
     """
     try:
         if os.path.getsize(file) > LARGEST_FILE:
-            refused(f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples{LIMITS}", "file")
+            refused(
+                f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples{LIMITS}", "file"
+            )
         with open(file, "rb") as stream:
             raw = stream.read()
     except OSError as error:
         refused(f"cannot be read: {error.strerror or error}", "file")
     for begin, what in _FOREIGN.items():
         if raw.startswith(begin):
-            refused(f"{os.path.basename(file)} is {what}, no text; export its table of figures as CSV", "file")
+            refused(
+                f"{os.path.basename(file)} is {what}, no text; export its table of figures as CSV",
+                "file",
+            )
 
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
@@ -224,9 +240,13 @@ def _first_fault(text: str, layout: Layout) -> Fault:
         advice = _advice(text, number, cells, column, layout)
         if len(cells) < max(layout.wanted):
             row = f": {_shown(line)}" if _shown(line) else ""
-            return Fault(("file",), f"line {number} has no column {max(layout.wanted)}{row}{advice}")
+            return Fault(
+                ("file",), f"line {number} has no column {max(layout.wanted)}{row}{advice}"
+            )
         as_written = line.split(layout.between)
-        shown = _shown(as_written[column - 1].strip() if len(as_written) == len(cells) else cells[column - 1])
+        shown = _shown(
+            as_written[column - 1].strip() if len(as_written) == len(cells) else cells[column - 1]
+        )
         wrong = f"'{shown}' is no number" if shown else f"column {column} holds no number"
         return Fault(("file",), f"line {number}: {wrong}{advice}")
     return Fault(("file",), "its rows cannot be read as numbers")
@@ -248,7 +268,11 @@ def _advice(text: str, number: int, cells: list[str], column: int, layout: Layou
     quoted = any('"' in line for line in lines)
     delimiters = dict.fromkeys((layout.delimiter, "semicolon", "tab", "comma", "space"))
     signs = itertools.product(delimiters, dict.fromkeys((layout.decimal, *DECIMALS)))
-    tried = [layout._replace(delimiter=one, decimal=other) for one, other in signs if quoted or one != other]
+    tried = [
+        layout._replace(delimiter=one, decimal=other)
+        for one, other in signs
+        if quoted or one != other
+    ]
     if layout.angle_step:
         tried = [one._replace(columns=columns) for one in tried for columns in (one.columns, (1,))]
     rows = [[i for i, line in enumerate(lines) if line and not one.read(line)[1]] for one in tried]
@@ -278,5 +302,13 @@ def _advice(text: str, number: int, cells: list[str], column: int, layout: Layou
 def _differing_keys(found: Layout, given: Layout) -> list[str]:
     """Return the keys that make the given layout that which was found."""
     now, before = found._asdict(), given._asdict()
-    written = [f"'{key}: {now[key]}'" for key in ("skip_rows", "delimiter", "decimal") if now[key] != before[key]]
-    return written if found.columns == given.columns else [*written, f"'pressure_column: {found.columns[0]}'"]
+    written = [
+        f"'{key}: {now[key]}'"
+        for key in ("skip_rows", "delimiter", "decimal")
+        if now[key] != before[key]
+    ]
+    return (
+        written
+        if found.columns == given.columns
+        else [*written, f"'pressure_column: {found.columns[0]}'"]
+    )

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from kurbel.declared.forms.values import Form, NumberForm
-from kurbel.declared.numerals import NUMBER, familiar, plain
+from kurbel.declared.numerals import NUMBER, familiar, keyboard_text
 from kurbel.declared.reading import (
     LONGEST_VALUE,
     REFUSED,
@@ -14,8 +14,8 @@ from kurbel.declared.reading import (
     Reading,
     has_refused,
     is_nothing,
-    kind_of,
-    shown,
+    node_kind,
+    text_in_one_line,
 )
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
@@ -71,7 +71,9 @@ class Figures(Form):
     shape = dict
 
     def __init__(self, expected: str, written: str, what: str, tolerated: bool = False) -> None:
-        super().__init__(expected, written=written, schema={"type": "object"})  # see `schema` for the key values
+        super().__init__(
+            expected, written=written, schema={"type": "object"}
+        )  # see `schema` for the key values
         self.what, self.tolerated = what, tolerated
 
     def figure_of(self, quantity: Quantity) -> Form:
@@ -81,8 +83,12 @@ class Figures(Form):
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read every figure by the form of its quantity."""
-        if not isinstance(value, dict):  # an empty one, as --set limits={} writes it, takes off those of the file
-            refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+        if not isinstance(
+            value, dict
+        ):  # an empty one, as --set limits={} writes it, takes off those of the file
+            refused(
+                f"expected {self.expected}, got {'nothing' if is_nothing(value) else node_kind(value)}"
+            )
         known = reading.key_values()
         found: dict[str, object] = {}
         for name, written in value.items():
@@ -94,24 +100,30 @@ class Figures(Form):
             if not wrong and known[ids[0]].listed:
                 wrong = f"'{name}' is a list of values; no {self.what} can be put on it"
             if id in found:
-                wrong = f"'{shown(name)}' is the symbol of {id}, which is given already; leave one of them out"
+                wrong = f"'{text_in_one_line(name)}' is the symbol of {id}, which is given already; leave one of them out"
             if wrong:
                 reading.fault((*path, name), wrong, at_key=True)
                 continue
             figure = self.figure_of(known[ids[0]]).read(reading, written, (*path, name))
             if isinstance(figure, Expected):
                 figure = replace(figure, name=name)
-            found[id] = Bound(figure, written_unit(str(written)), name) if isinstance(figure, float) else figure
+            found[id] = (
+                Bound(figure, written_unit(str(written)), name)
+                if isinstance(figure, float)
+                else figure
+            )
         return REFUSED if has_refused(found.values()) else tuple(found.items())
 
     def _unknown(self, name: str, known: Mapping[str, Quantity]) -> str:
         single = {id: one for id, one in known.items() if not one.listed}
         hint = did_you_mean(name, tuple(single)) or in_sentences(name, single.values())
         some = f"; known are {', '.join([*known][:6])}, …"
-        return f"unknown key value '{shown(name)}'{hint or some}"
+        return f"unknown key value '{text_in_one_line(name)}'{hint or some}"
 
 
-LIMITS = Figures("a mapping of key values to bounds, such as 'c_max: 6 m/s'", "`{key value: bound}`", "bound")
+LIMITS = Figures(
+    "a mapping of key values to bounds, such as 'c_max: 6 m/s'", "`{key value: bound}`", "bound"
+)
 EXPECTATIONS = Figures(
     "a mapping of key values to figures, such as 'b_max: 13.16 m/s2 ± 0.5 %'",
     "`{key value: figure ± tolerance}`, or two bounds `[least, most]`",
@@ -136,27 +148,35 @@ class FigureForm(Form):
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a figure with its tolerance, or two bounds."""
         if isinstance(value, list) and len(value) == 2:
-            low, high = (self.size.read(reading, one, (*path, index)) for index, one in enumerate(value))
+            low, high = (
+                self.size.read(reading, one, (*path, index)) for index, one in enumerate(value)
+            )
             if low is REFUSED or high is REFUSED:
                 return REFUSED
             if low > high:
-                refused(f"the first bound, {value[0]}, is larger than the second, {value[1]}; exchange them")
+                refused(
+                    f"the first bound, {value[0]}, is larger than the second, {value[1]}; exchange them"
+                )
             return Expected(low, high, written_unit(str(value[0])), f"{value[0]} to {value[1]}")
         parts = re.split(_PLUS_MINUS, familiar(value)) if isinstance(value, str) else []
         if len(parts) != 2 or not all(parts):
-            refused(f"expected {self.expected}, got {kind_of(value)}")
+            refused(f"expected {self.expected}, got {node_kind(value)}")
         figure, tolerance = parts
         percent = re.fullmatch(_PERCENT, tolerance)
         if not written_unit(figure) and not percent:
             figure = f"{figure} {written_unit(tolerance)}"  # 13.16 ± 0.05 m/s2
         middle = self.size.read(reading, Plain(figure), path)
-        around = 1.0 if percent or middle is REFUSED else self.size.read(reading, Plain(tolerance), path)
+        around = (
+            1.0 if percent or middle is REFUSED else self.size.read(reading, Plain(tolerance), path)
+        )
         if middle is REFUSED or around is REFUSED:
             return REFUSED
         if percent:
             around = float(percent[1]) / 100 * abs(middle)
         if not around > 0:
-            refused(f"the tolerance of '{value}' is {'0' if not around else 'negative'}; write how far off it may be")
+            refused(
+                f"the tolerance of '{value}' is {'0' if not around else 'negative'}; write how far off it may be"
+            )
         return Expected(middle - around, middle + around, written_unit(figure), str(value))
 
 
@@ -176,19 +196,27 @@ class ByKey(Form):
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read uncertainties; the values of a load case are read when they replace those of the file."""
         if not isinstance(value, dict) or not value:
-            refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+            refused(
+                f"expected {self.expected}, got {'nothing' if is_nothing(value) else node_kind(value)}"
+            )
         if not self.spreads:
             return tuple(value.items())
         found: dict[str, object] = {}
         for name, one in value.items():
             short = isinstance(one, str) and len(one) <= LONGEST_VALUE
-            wrong = f"expected a standard uncertainty above 0, such as {_SPREADS}, got {kind_of(one)}"
+            wrong = (
+                f"expected a standard uncertainty above 0, such as {_SPREADS}, got {node_kind(one)}"
+            )
             found[name] = (short and spread_text(str(one))) or reading.fault((*path, name), wrong)
         return REFUSED if has_refused(found.values()) else tuple(found.items())
 
 
-UNCERTAINTIES = ByKey(f"a mapping of keys to standard uncertainties, such as {_SPREADS}", spreads=True)
-SETTINGS = ByKey("a mapping of dotted keys to values, such as 'speed: 60 rpm' or 'cylinders.0.bore: 450 mm'")
+UNCERTAINTIES = ByKey(
+    f"a mapping of keys to standard uncertainties, such as {_SPREADS}", spreads=True
+)
+SETTINGS = ByKey(
+    "a mapping of dotted keys to values, such as 'speed: 60 rpm' or 'cylinders.0.bore: 450 mm'"
+)
 
 
 def spread_text(text: str) -> str:
@@ -197,6 +225,6 @@ def spread_text(text: str) -> str:
     >>> spread_text("± 0.2 mm"), spread_text("+-2 %"), spread_text("±-1 mm")
     ('0.2 mm', '2 %', '')
     """
-    rest = re.sub(r"(±|\+/-|\+-)\s*", "", plain(text).strip(), count=1)
+    rest = re.sub(r"(±|\+/-|\+-)\s*", "", keyboard_text(text).strip(), count=1)
     number = NUMBER.match(rest)
     return rest if number and float(number.group()) > 0 else ""

@@ -1,6 +1,6 @@
 """Forms of mappings and lists: records (also inline), lists, alternatives, words that choose further keys.
 
-A file is read in two passes: first, forms turn texts into numbers, words and lists, and each mapping into a `Given`;
+A file is read in two passes: first, forms turn texts into numbers, words and lists, and each mapping into a `ReadMapping`;
 then `Maker` makes records of these.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 from kurbel.arrays import Indivisible, Truth
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
 from kurbel.declared.keys import TOO_EXTREME, Key, Keys, Record, required
-from kurbel.declared.numerals import NUMBER, plain
+from kurbel.declared.numerals import NUMBER, keyboard_text
 from kurbel.declared.reading import (
     REFUSED,
     Node,
@@ -25,8 +25,8 @@ from kurbel.declared.reading import (
     glued_hint,
     has_refused,
     is_nothing,
-    kind_of,
-    shown,
+    node_kind,
+    text_in_one_line,
 )
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import NotANumber, Path, RuleError, path_text, refused
@@ -35,7 +35,7 @@ from kurbel.numerics.arithmetic import is_number
 
 
 class RecordForm(Form):
-    """A mapping that becomes a record. inline_too: the outer mapping may have its keys, too, so `places` skips it."""
+    """A mapping that becomes a record. inline_too: the outer mapping may have its keys, too, so `key_places` skips it."""
 
     shape = dict
 
@@ -43,7 +43,9 @@ class RecordForm(Form):
         self.record, self.inline_too, self.keys = record, inline_too, record.KEYS
         parts = ((name, key.form) for name, key in self.keys.items())
         super().__init__(f"a mapping with the keys {', '.join(self.keys)}", parts=parts)
-        self.listed = next((form for _, form in self.parts if isinstance(form, Inline) and form.unless), None)
+        self.listed = next(
+            (form for _, form in self.parts if isinstance(form, Inline) and form.unless), None
+        )
 
     def names(self, mapping: Tree) -> Keys:
         """Return all keys that this mapping may have: its own, inline ones, those of the variant."""
@@ -64,7 +66,9 @@ class RecordForm(Form):
         meant = dict.fromkeys(self._unknown(reading, value, path), REFUSED)
         return self.build(reading, value | meant, path)
 
-    def build(self, reading: Reading, mapping: Tree, path: Path, inline: bool = False) -> "Given":
+    def build(
+        self, reading: Reading, mapping: Tree, path: Path, inline: bool = False
+    ) -> "ReadMapping":
         """Read the keys of this record from a mapping that may also have keys of other records."""
         own = [name for name, key in self.keys.items() if not isinstance(key.form, Inline)]
         rest = {name: value for name, value in mapping.items() if name not in own}
@@ -76,8 +80,16 @@ class RecordForm(Form):
                 if form.unless not in mapping and rest.keys() & form.names(mapping):
                     values[name] = form.build(reading, rest, path, inline=True)
             elif isinstance(form, Variant):
-                word = form.read(reading, mapping[name], (*path, name)) if name in mapping else form.default
-                values[name] = word if word is REFUSED else form.cases[word].build(reading, rest, path, inline=True)
+                word = (
+                    form.read(reading, mapping[name], (*path, name))
+                    if name in mapping
+                    else form.default
+                )
+                values[name] = (
+                    word
+                    if word is REFUSED
+                    else form.cases[word].build(reading, rest, path, inline=True)
+                )
             elif name in mapping:
                 values[name] = form.read(reading, mapping[name], (*path, name))
             elif name in missing:
@@ -85,8 +97,10 @@ class RecordForm(Form):
                 present = next((given for given in own if given in mapping), "") if inline else ""
                 meaning = key.text[:1].lower() + key.text[1:]
                 message = f"'{name}' is missing{' as well' if present else ''}: {meaning}; {key.write(name)}"
-                values[name] = reading.fault((*path, present) if present else path, message, bool(present))
-        return Given(self, mapping, path, values)
+                values[name] = reading.fault(
+                    (*path, present) if present else path, message, bool(present)
+                )
+        return ReadMapping(self, mapping, path, values)
 
     def _unknown(self, reading: Reading, mapping: Tree, path: Path) -> Iterator[str]:
         """Report each unknown key, and yield the known keys that were probably meant."""
@@ -119,8 +133,14 @@ class RecordForm(Form):
         }
         if self.listed and self.listed.unless in mapping:
             unless = self.listed.unless
-            there = f"'{unless}.each'" if isinstance(mapping[unless], dict) else f"the items of '{unless}'"
-            moved |= dict.fromkeys(self.listed.names(mapping), f"it belongs {self.listed.item}; move it into {there}")
+            there = (
+                f"'{unless}.each'"
+                if isinstance(mapping[unless], dict)
+                else f"the items of '{unless}'"
+            )
+            moved |= dict.fromkeys(
+                self.listed.names(mapping), f"it belongs {self.listed.item}; move it into {there}"
+            )
         return moved
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
@@ -131,7 +151,9 @@ class RecordForm(Form):
             name, item = (*fault.path, "", "")[:2]
             if unless and name == unless and isinstance(item, int):
                 listed = mapping.get(unless)
-                head = () if listed is None else (name, "each" if isinstance(listed, dict) else item)
+                head = (
+                    () if listed is None else (name, "each" if isinstance(listed, dict) else item)
+                )
                 fault = fault._replace(path=(*head, *fault.path[2:]))
             faults.append(fault)
         return RuleError(*faults)
@@ -150,10 +172,10 @@ class Inline(RecordForm):
 
 
 @dataclass(eq=False)
-class Given:
+class ReadMapping:
     """A mapping after the first pass: all that its record is made from.
 
-    mapping, path: what was read, and where; values: by key, with a `Given` where there will be a record; made: the
+    mapping, path: what was read, and where; values: by key, with a `ReadMapping` where there will be a record; made: the
     record, after the second pass.
     """
 
@@ -168,23 +190,29 @@ def no_mapping(form: Form, value: Node) -> NoReturn:
     """Raise RuleError for a value that is no mapping."""
     if isinstance(value, Plain) and not value:
         refused(f"no value here; write below it, indented, {form.expected}")
-    refused(f"expected {form.expected}, got {kind_of(value)}{glued_hint(value)}")
+    refused(f"expected {form.expected}, got {node_kind(value)}{glued_hint(value)}")
 
 
-def places(form: Form, path: Path = (), words: str = "at the top of the file") -> Iterator[tuple[str, Path, str]]:
+def key_places(
+    form: Form, path: Path = (), words: str = "at the top of the file"
+) -> Iterator[tuple[str, Path, str]]:
     """Yield (description, path, key) for every key below a mapping of this form; both are of the key's mapping."""
     if isinstance(form, RecordForm) and form.inline_too:
         return
     for name, inner in form.parts:
         if isinstance(inner, Inline):
-            yield from places(inner, path, inner.item if inner.unless else words)
+            yield from key_places(inner, path, inner.item if inner.unless else words)
             continue
         below: Path = (*path, name) if name else path
         if name:
             yield words, path, name
         if isinstance(inner, Variant):
-            yield from ((f"to '{name}: {word}'", (), one) for word, case in inner.cases.items() for one in case.keys)
-        yield from places(inner, below, f"under '{path_text(below)}'" if name else words)
+            yield from (
+                (f"to '{name}: {word}'", (), key)
+                for word, case in inner.cases.items()
+                for key in case.keys
+            )
+        yield from key_places(inner, below, f"under '{path_text(below)}'" if name else words)
 
 
 def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:
@@ -206,7 +234,9 @@ def too_extreme(record: object, values: Mapping[str, object]) -> Truth:
     infinite = any(one == math.inf for one in (*values.values(), *defaults) if is_number(one))
     broken: Truth = False
     for value in vars(record).values():
-        if is_number(value) or (isinstance(value, np.ndarray) and not isinstance(record, Indivisible)):
+        if is_number(value) or (
+            isinstance(value, np.ndarray) and not isinstance(record, Indivisible)
+        ):
             broken = broken | ~(np.isfinite(value) | (infinite & (value == math.inf)))
     return broken
 
@@ -222,16 +252,18 @@ class Maker:
 
     def made(self, value: object) -> Any:
         """Return the record, tuple or value that was read; REFUSED after reporting what is wrong with it."""
-        if isinstance(value, Given):
+        if isinstance(value, ReadMapping):
             values = {name: self.made(one) for name, one in value.values.items()}
             try:
                 value.made = self._record(value.form, values)
             except ArithmeticError:
                 value.made = self.reading.fault(value.path, TOO_EXTREME)
             except RuleError as error:
-                value.made = self.reading.refuse(value.path, value.form.flattened(error, value.mapping))
+                value.made = self.reading.refuse(
+                    value.path, value.form.flattened(error, value.mapping)
+                )
             return value.made
-        if isinstance(value, tuple) and any(isinstance(one, Given) for one in value):
+        if isinstance(value, tuple) and any(isinstance(one, ReadMapping) for one in value):
             return tuple(map(self.made, value))
         return value
 
@@ -250,7 +282,9 @@ class Maker:
         try:
             record = form.record.from_keys(**(values | unread))
         except RuleError as error:
-            raise RuleError(*(one for one in error.faults if not (unread and isinstance(one, NotANumber)))) from None
+            raise RuleError(
+                *(fault for fault in error.faults if not (unread and isinstance(fault, NotANumber)))
+            ) from None
         except (ArithmeticError, ValueError):
             if not unread:  # else a formula takes no nan
                 raise
@@ -258,8 +292,13 @@ class Maker:
             return REFUSED
         extreme = too_extreme(record, values)
         if len(self.broken):
-            rules = [*form.record.rules_of_keys(values), *(record.rules() if isinstance(record, Record) else ())]
-            self.broken = functools.reduce(np.logical_or, (rule.broken for rule in rules), self.broken | extreme)
+            rules = [
+                *form.record.rules_of_keys(values),
+                *(record.rules() if isinstance(record, Record) else ()),
+            ]
+            self.broken = functools.reduce(
+                np.logical_or, (rule.broken for rule in rules), self.broken | extreme
+            )
         elif extreme:
             refused(TOO_EXTREME)
         return record
@@ -274,7 +313,11 @@ class Variant(Choice):
 
     def chosen(self, word: Node | None) -> Iterable[RecordForm]:
         """Return the form that a word chooses, the default one without a word, or all forms if it is unknown."""
-        known = self.cases.get(self.default if word is None else word) if isinstance(word, (str, type(None))) else None
+        known = (
+            self.cases.get(self.default if word is None else word)
+            if isinstance(word, (str, type(None)))
+            else None
+        )
         return [known] if known else self.cases.values()
 
 
@@ -298,13 +341,15 @@ class Listing(Form):
         if isinstance(value, Plain) and not value:
             refused("no value here; write a list below it, each item after '- '")
         if not isinstance(value, list):
-            refused(f"expected a list, each item after '- ', got {kind_of(value)}")
+            refused(f"expected a list, each item after '- ', got {node_kind(value)}")
         if not value:
             refused("the list is empty; give at least one item or leave the key out")
         if len(value) > MOST_ITEMS:
             refused(f"{len(value)} items; no machine has more than {MOST_ITEMS} of them")
         whole = self._completed(reading, value, path) if self.called else value
-        return tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole))
+        return tuple(
+            self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole)
+        )
 
     def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
         """Return items with the keys that `like` copies; an error in a copied key is reported once, at the original."""
@@ -318,18 +363,24 @@ class Listing(Form):
             if "like" in item:
                 like = str(item["like"])
                 if like not in above:
-                    hint = did_you_mean(like, tuple(above)) or f"; above are {', '.join(map(shown, above))}" * bool(
-                        above
-                    )
-                    none_such = f"no {self.called} above this one is called '{shown(like)}'{hint}"
+                    hint = did_you_mean(
+                        like, tuple(above)
+                    ) or f"; above are {', '.join(map(text_in_one_line, above))}" * bool(above)
+                    none_such = f"no {self.called} above this one is called '{text_in_one_line(like)}'{hint}"
                     completed[index] = reading.fault((*here, "like"), none_such)
                     continue
                 other = completed[above[like]]
                 reading.alike[here] = (*path, above[like])
                 own = {key: value for key, value in item.items() if key != "like"}
-                pairs = [{name, key.instead} for name, key in self.item.names(other | own).items() if key.instead]
+                pairs = [
+                    {name, key.instead}
+                    for name, key in self.item.names(other | own).items()
+                    if key.instead
+                ]
                 replaced = {"name", *(key for pair in pairs if own.keys() & pair for key in pair)}
-                completed[index] = {key: value for key, value in other.items() if key not in replaced} | own
+                completed[index] = {
+                    key: value for key, value in other.items() if key not in replaced
+                } | own
             name = completed[index].get("name")
             above.setdefault(name if isinstance(name, str) else f"{self.called} {index + 1}", index)
         return completed
@@ -355,13 +406,17 @@ class OneOf(Form):
         """Read a value by the first form that has its shape."""
         if isinstance(value, dict):
             words = {word for form in self.forms if isinstance(form, Choice) for word in form.words}
-            words -= {key for form in self.forms if isinstance(form, RecordForm) for key in form.keys}
+            words -= {
+                key for form in self.forms if isinstance(form, RecordForm) for key in form.keys
+            }
             if name := next((name for name in value if name in words), ""):
                 alone = f"- {name}" if isinstance(path[-1], int) else f"{path[-1]}: {name}"
                 return reading.fault((*path, name), f"takes no value; write '{alone}'", at_key=True)
         for form in self._fitting(value):
             return form.read(reading, value, path)
-        return refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+        return refused(
+            f"expected {self.expected}, got {'nothing' if is_nothing(value) else node_kind(value)}"
+        )
 
     def kind_as_written(self, value: Node | None) -> str:
         """Return the kind of the number that is written in this way."""
@@ -371,7 +426,7 @@ class OneOf(Form):
         """Return the forms that have the shape of a value, or look like it; all of its shape if none does."""
         shape = type(value) if isinstance(value, (dict, list)) else str
         alike = [form for form in self.forms if form.shape is shape]
-        text = plain(value) if isinstance(value, str) else ""
+        text = keyboard_text(value) if isinstance(value, str) else ""
         suiting = [form for form in alike if not (isinstance(form, Choice) and NUMBER.match(text))]
         bare = NUMBER.fullmatch(text) is not None
         return [form for form in suiting if (form.kind == "ratio") == bare] or suiting or alike
@@ -387,12 +442,20 @@ class Keyed(Form):
     shape = dict
 
     def __init__(
-        self, cases: dict[str, Form], otherwise: RecordForm, texts: dict[str, str], beside: tuple[str, ...] = ()
+        self,
+        cases: dict[str, Form],
+        otherwise: RecordForm,
+        texts: dict[str, str],
+        beside: tuple[str, ...] = (),
     ) -> None:
         expected = f"{otherwise.expected}; or with one of {', '.join(cases)}"
         super().__init__(expected, parts=(*cases.items(), ("", otherwise)))
         self.cases, self.otherwise, self.beside = cases, otherwise, beside
-        self.single = {name: Key(one, texts.get(name, "")) for name, one in cases.items() if one.shape is not dict}
+        self.single = {
+            name: Key(one, texts.get(name, ""))
+            for name, one in cases.items()
+            if one.shape is not dict
+        }
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a mapping by the key that decides its form."""
@@ -403,7 +466,9 @@ class Keyed(Form):
         if not deciding:
             for name in value:
                 if name not in known and (meant := near(name, (*known, *cases))) in cases:
-                    return reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
+                    return reading.fault(
+                        (*path, name), f"unknown key; did you mean '{meant}'?", at_key=True
+                    )
             return self.otherwise.read(reading, value, path)
         case, inside = cases[deciding], value[deciding]
         moved: Tree = {}
@@ -413,7 +478,11 @@ class Keyed(Form):
             inside = {**inside, **moved}
         others = [name for name in value if name != deciding and name not in moved]
         for name in others:
-            place = "" if name in known or name in cases else reading.where_it_belongs(name, path) or "leave it out"
+            place = (
+                ""
+                if name in known or name in cases
+                else reading.where_it_belongs(name, path) or "leave it out"
+            )
             message = f"cannot be combined with '{deciding}'; {place or 'leave one of them out'}"
             reading.fault((*path, name), message, at_key=True)
         inner = case.read(reading, inside, (*path, deciding))

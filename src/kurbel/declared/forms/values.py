@@ -12,16 +12,26 @@ from typing import Any, ClassVar, NoReturn
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Number, Truth
-from kurbel.declared.numerals import NUMBER, parse_number, parse_ratio, plain
-from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Node, Plain, Reading, glued_hint, is_nothing, kind_of, shown
+from kurbel.declared.numerals import NUMBER, keyboard_text, parse_number, parse_ratio
+from kurbel.declared.reading import (
+    LONGEST_VALUE,
+    REFUSED,
+    Node,
+    Plain,
+    Reading,
+    glued_hint,
+    is_nothing,
+    node_kind,
+    text_in_one_line,
+)
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import (
     KINDS,
     MOST_ITEMS,
     MOST_POINTS,
-    Factor,
-    Point,
-    example,
+    DiagramPoint,
+    UnitFactor,
+    kind_example,
     parse_quantity,
     unit_example,
     unit_factor,
@@ -60,7 +70,12 @@ class Form(ABC):
         schema: Schema | None = None,
         parts: "Iterable[tuple[str, Form]]" = (),
     ) -> None:
-        self.expected, self.example, self.schema, self.parts = expected, example, schema or {}, tuple(parts)
+        self.expected, self.example, self.schema, self.parts = (
+            expected,
+            example,
+            schema or {},
+            tuple(parts),
+        )
         self.written = written or (expected if self.shape is str else "a mapping")
 
     def kind_as_written(self, value: Node | None) -> str:
@@ -88,14 +103,17 @@ def one_line(value: Node, expected: str) -> str:
     if isinstance(value, str) and len(value) > LONGEST_VALUE:
         refused(f"expected {expected}, got {len(value)} characters; {LONGEST_VALUE} are the most")
     if not isinstance(value, str) or not value.isprintable():
-        refused(f"expected {expected}, got {kind_of(value)}")
+        refused(f"expected {expected}, got {node_kind(value)}")
     return value if value.strip() else refused(f"expected {expected}, got an empty text")
 
 
 def _beyond(value: Number, kind: str) -> tuple[tuple[Truth, str], ...]:
     """Return whether a value in the base of its kind, or which of many, is too large or too small for machine files."""
     smallest, largest, *_ = KINDS[kind]
-    return (~(np.abs(value) <= largest), "large"), ((value != 0) & (np.abs(value) < smallest), "small")
+    return (~(np.abs(value) <= largest), "large"), (
+        (value != 0) & (np.abs(value) < smallest),
+        "small",
+    )
 
 
 def out_of_size(value: float, kind: str) -> str:
@@ -109,11 +127,13 @@ def out_of_size(value: float, kind: str) -> str:
         return ""
     smallest, largest, _, unit, *_ = KINDS[kind]
     name = "bare number" if kind == "ratio" else kind.replace("_", " ")
-    within = f"at most {largest:g} {unit}" if too == "large" else f"0 or at least {smallest:g} {unit}"
+    within = (
+        f"at most {largest:g} {unit}" if too == "large" else f"0 or at least {smallest:g} {unit}"
+    )
     return f"is too {too}; {'an' if name[0] in 'aei' else 'a'} {name} in a machine file is {within}".rstrip()
 
 
-def size_faults(points: Sequence[Point], unit: Factor, kind: str) -> list[Fault]:
+def size_faults(points: Sequence[DiagramPoint], unit: UnitFactor, kind: str) -> list[Fault]:
     """Return a fault for the first point whose value in this unit of its kind is too large; [] if there is none."""
     up, down = unit
     for index, (_, value) in enumerate(points):
@@ -122,7 +142,7 @@ def size_faults(points: Sequence[Point], unit: Factor, kind: str) -> list[Fault]
     return []
 
 
-def order_faults(points: Sequence[Point], place: str) -> list[Fault]:
+def order_faults(points: Sequence[DiagramPoint], place: str) -> list[Fault]:
     """Return a fault for the first point at which a line turns back, or has a third value; place: how one is written.
 
     >>> order_faults([(0, 5), (0.6, 4), (0.5, 3)], "fraction {:g}")[0].message
@@ -132,7 +152,9 @@ def order_faults(points: Sequence[Point], place: str) -> list[Fault]:
     for index in range(1, len(points)):
         before, here = points[index - 1], points[index]
         if here[0] != before[0] and (here[0] > before[0]) != forward:
-            return [Fault((index,), f"{place.format(here[0])} after {before[0]:g}: the line turns back")]
+            return [
+                Fault((index,), f"{place.format(here[0])} after {before[0]:g}: the line turns back")
+            ]
         if index > 1 and points[index - 2][0] == here[0] and points[index - 2] != before != here:
             return [Fault((index,), f"three points at {place.format(here[0])}; a jump has two")]
     return []
@@ -166,14 +188,19 @@ class NumberForm(Form):
     def __post_init__(self) -> None:
         bare = self.kind == "ratio"
         if self.whole:
-            sample, expected = str(max(self.least or 0, 3) if self.most is None else self.least), "a whole number"
+            sample, expected = (
+                str(max(self.least or 0, 3) if self.most is None else self.least),
+                "a whole number",
+            )
         elif bare:
             sample, expected = "5" if (self.above or 0) >= 1 else "0.1", "a number"
         else:
-            sample = example(self.kind)
+            sample = kind_example(self.kind)
             expected = f"a number with its unit, such as '{sample}'"
         written = "" if bare else f"`{sample}`" + "".join(f", or `{word}`" for word in self.words)
-        super().__init__(expected + "".join(f" or '{word}'" for word in self.words), sample, written)
+        super().__init__(
+            expected + "".join(f" or '{word}'" for word in self.words), sample, written
+        )
         self.number = None if self.whole or self.apart else self
         self.unread = None if self.number is None or self.becomes else math.nan
 
@@ -182,8 +209,10 @@ class NumberForm(Form):
         text = one_line(value, self.expected)
         if text in self.words:
             return self.words[text]
-        if (self.words and text.strip()[0].isalpha()) or (self.or_else and not NUMBER.match(plain(text))):
-            refused(f"expected {self.expected}{self.or_else}, got '{shown(text)}'")
+        if (self.words and text.strip()[0].isalpha()) or (
+            self.or_else and not NUMBER.match(keyboard_text(text))
+        ):
+            refused(f"expected {self.expected}{self.or_else}, got '{text_in_one_line(text)}'")
         try:
             number = self._number(text)
         except UnitError as error:
@@ -197,7 +226,9 @@ class NumberForm(Form):
         if self.kind != "ratio":
             return parse_quantity(text, self.kind)
         if self.share_of and written_unit(text)[:1].isalpha():
-            refused(f"expected a number, got '{text}'; it is a share of {self.share_of}, such as 0.05 or 5 %")
+            refused(
+                f"expected a number, got '{text}'; it is a share of {self.share_of}, such as 0.05 or 5 %"
+            )
         if not isinstance(text, Plain):
             what = "a whole number" if self.whole else "a number"
             refused(f'expected {what}, got the text "{text}"; leave out the quotation marks')
@@ -247,11 +278,16 @@ class Choice(Form):
     """
 
     def __init__(
-        self, words: tuple[str, ...], also: dict[str, str] | None = None, means: dict[str, object] | None = None
+        self,
+        words: tuple[str, ...],
+        also: dict[str, str] | None = None,
+        means: dict[str, object] | None = None,
     ) -> None:
         self.words, self.also, self.means = words, also or {}, means or {}
         every, written = (f"'{word}'" for word in words), ", ".join(f"`{word}`" for word in words)
-        schema: Schema = {"type": "boolean"} if words == ("true", "false") else {"enum": list(words)}
+        schema: Schema = (
+            {"type": "boolean"} if words == ("true", "false") else {"enum": list(words)}
+        )
         super().__init__(" or ".join(every), words[0], written, schema)
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
@@ -260,8 +296,12 @@ class Choice(Form):
             return self.means.get(value, str(value))
         text = one_line(value, self.expected)
         meant = self.also.get(text.strip().lower())
-        hint = f"; write '{meant}'" if meant else did_you_mean(text, self.words) or f"; write {self.expected}"
-        return refused(f"unknown word '{shown(text)}'{hint}")
+        hint = (
+            f"; write '{meant}'"
+            if meant
+            else did_you_mean(text, self.words) or f"; write {self.expected}"
+        )
+        return refused(f"unknown word '{text_in_one_line(text)}'{hint}")
 
 
 class Text(Form):
@@ -281,7 +321,9 @@ class Text(Form):
         pattern: str = "",
         unit_of: str = "",
     ) -> None:
-        found = {"type": ["string", "integer"], "pattern": rf"^\s*{pattern}\s*$"} if pattern else schema
+        found = (
+            {"type": ["string", "integer"], "pattern": rf"^\s*{pattern}\s*$"} if pattern else schema
+        )
         super().__init__(expected, example, written, found)
         self.become, self.pattern, self.unit_of = become, pattern, unit_of
         self.unread = (math.nan, 1.0) if unit_of else None
@@ -289,9 +331,9 @@ class Text(Form):
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the text."""
         text = one_line(value, self.expected)
-        if self.pattern and not re.fullmatch(self.pattern, plain(text)):
+        if self.pattern and not re.fullmatch(self.pattern, keyboard_text(text)):
             refused(f"expected {self.expected}, got '{text}'")
-        return self.become(plain(text) if self.pattern else text, reading.folder)
+        return self.become(keyboard_text(text) if self.pattern else text, reading.folder)
 
 
 TEXT = Text("a text", lambda text, folder: text.strip(), schema={"type": ["string", "number"]})
@@ -312,7 +354,11 @@ def _firing_order(text: str, folder: str) -> tuple[int, ...]:
         refused(f"cylinder {twice} is listed twice in {text}")
     missing = next((number for number in range(1, max(order) + 1) if number not in order), None)
     if missing or len(order) > MOST_ITEMS:
-        refused(f"cylinder {missing} is missing in {text}" if missing else f"more than {MOST_ITEMS} cylinders")
+        refused(
+            f"cylinder {missing} is missing in {text}"
+            if missing
+            else f"more than {MOST_ITEMS} cylinders"
+        )
     return order
 
 
@@ -354,11 +400,15 @@ def _existing(text: str, folder: str) -> str:
     """Return the path of a file, given relative to this folder, as one that can be opened; raises RuleError."""
     full = os.path.join(folder, text)
     if os.path.isdir(full):
-        refused(f"'{shown(text)}' is a folder; name the file in it")
+        refused(f"'{text_in_one_line(text)}' is a folder; name the file in it")
     if os.path.exists(full) and not os.path.isfile(full):
-        refused(f"'{shown(text)}' is a device or a pipe; name a file that can be read again")
+        refused(
+            f"'{text_in_one_line(text)}' is a device or a pipe; name a file that can be read again"
+        )
     if not os.path.isfile(full):
-        refused(f"there is no file '{shown(text)}' in {shown(folder) if folder else 'the working directory'}")
+        refused(
+            f"there is no file '{text_in_one_line(text)}' in {text_in_one_line(folder) if folder else 'the working directory'}"
+        )
     return full
 
 
@@ -384,17 +434,19 @@ class Points(Form):
         number, length = {"type": ["number", "string"] if ratio else "number"}, len(names)
         one = {"type": "array", "items": number, "minItems": length, "maxItems": length}
         schema = {"type": "array", "items": one, "minItems": least, "maxItems": MOST_POINTS}
-        super().__init__(f"a list of {self._called}s [{self._one}, …]", sample, f"`[{self._one}, …]`", schema)
+        super().__init__(
+            f"a list of {self._called}s [{self._one}, …]", sample, f"`[{self._one}, …]`", schema
+        )
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the pairs, and report the first few wrong ones."""
         if isinstance(value, Plain) and not value:
             refused(f"a value is missing; write {self.expected}")
         if not isinstance(value, list):
-            refused(f"expected {self.expected}, got {kind_of(value)}")
+            refused(f"expected {self.expected}, got {node_kind(value)}")
         if len(value) > MOST_POINTS:
             refused(f"{len(value)} points; more than {MOST_POINTS} are not taken, thin them out")
-        pairs: list[Point] = []
+        pairs: list[DiagramPoint] = []
         wrong: list[tuple[int, RuleError]] = []
         for index, item in enumerate(value):
             try:
@@ -405,7 +457,9 @@ class Points(Form):
             only = f"only {len(pairs)} point" if pairs else "no points"
             refused(f"{only}; at least {self.least} are needed, [{self._one}, …]")
         if wrong and all(isinstance(item, str) for item in value):
-            refused(f"expected {self.expected}, got single values; put each {self._called} into its own brackets")
+            refused(
+                f"expected {self.expected}, got single values; put each {self._called} into its own brackets"
+            )
         unknown = [(index, error) for index, error in wrong if error.faults]
         for index, reason in unknown[:_FAULTS_SHOWN]:
             reading.refuse((*path, index), reason)
@@ -414,15 +468,17 @@ class Points(Form):
             reading.fault((*path, more[0][0]), f"from here on {these} wrong as well")
         return REFUSED if wrong else pairs
 
-    def _numbers(self, item: Node) -> Point:
+    def _numbers(self, item: Node) -> DiagramPoint:
         """Return the numbers of a point; raises RuleError, without faults if these have been reported."""
         length = len(self.columns)
         if item is REFUSED:
             raise RuleError()
         if not isinstance(item, list):
-            refused(f"expected a {self._called} {self._one}, got {kind_of(item)}")
+            refused(f"expected a {self._called} {self._one}, got {node_kind(item)}")
         if any(isinstance(entry, (list, dict)) for entry in item):
-            refused(f"expected a {self._called} {self._one} of numbers; are there too many brackets?")
+            refused(
+                f"expected a {self._called} {self._one} of numbers; are there too many brackets?"
+            )
         if len(item) != length:
             self._miscounted(list(map(str, item)))
         numbers, faults = [], list[Fault]()
@@ -430,11 +486,15 @@ class Points(Form):
             try:
                 if is_nothing(entry):
                     refused(f"a value is missing; write the {self.columns[index]} as a number")
-                text = shown(str(entry), LONGEST_VALUE)
+                text = text_in_one_line(str(entry), LONGEST_VALUE)
                 if isinstance(entry, str) and not isinstance(entry, Plain):
-                    refused(f'expected a number, got the text "{shown(text)}"; leave out the quotation marks')
+                    refused(
+                        f'expected a number, got the text "{text_in_one_line(text)}"; leave out the quotation marks'
+                    )
                 if entry is not REFUSED:
-                    numbers.append(parse_ratio(text) if self.ratio and not index else parse_number(text))
+                    numbers.append(
+                        parse_ratio(text) if self.ratio and not index else parse_number(text)
+                    )
             except RuleError as error:
                 faults += (fault.below((index,)) for fault in error.faults)
         if len(numbers) < length:
@@ -445,9 +505,11 @@ class Points(Form):
         """Raise RuleError for a point of too many or too few numbers."""
         length = len(self.columns)
         if len(texts) == 1 < length < 3 and re.fullmatch(r"\S+\s+\S+", texts[0]):
-            both = shown(", ".join(texts[0].split()))
+            both = text_in_one_line(", ".join(texts[0].split()))
             refused(f"a comma is missing between the two numbers; write [{both}]")
-        whole = length < len(texts) <= 2 * length and all(re.fullmatch(r"[-+]?\d+", text) for text in texts)
+        whole = length < len(texts) <= 2 * length and all(
+            re.fullmatch(r"[-+]?\d+", text) for text in texts
+        )
         hint = "; write decimal points, such as 1.5 for 1,5" if whole else ""
-        wrong = f"a {self._called} {self._one} has {self._count} numbers, [{shown(', '.join(texts[:6]))}] has"
+        wrong = f"a {self._called} {self._one} has {self._count} numbers, [{text_in_one_line(', '.join(texts[:6]))}] has"
         refused(f"{wrong} {len(texts) or 'none'}{hint}")

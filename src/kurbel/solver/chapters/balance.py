@@ -104,7 +104,9 @@ class Contribution(NamedTuple):
     place: Number | None
 
 
-def parts_of(throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: bool, count: int) -> list[Contribution]:
+def contributions_of(
+    throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: bool, count: int
+) -> list[Contribution]:
     """Return (m x″(φ − β) + m_rot R e^{i(φ − β)}) e^{iγ} of each throw, and u n² e^{inφ} of each weight.
 
     book: with the acceleration of first order. Cylinders with the same mechanism share one analysis.
@@ -116,7 +118,9 @@ def parts_of(throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: b
         own = orders[id(throw.cylinder.mechanism)]
         forward = np.concatenate((own, np.zeros((k - len(own), count))))
         waves = np.concatenate((forward[::-1].conj(), np.zeros((1, count)), forward))
-        lag = np.multiply.outer(np.arange(-k, k + 1), np.broadcast_to(throw.cylinder.crank_position, count))
+        lag = np.multiply.outer(
+            np.arange(-k, k + 1), np.broadcast_to(throw.cylinder.crank_position, count)
+        )
         found.append(Contribution(waves * throw.mass * unit_vector(throw.bank - lag), throw.place))
     for weight in (*(throw.weight(throw.rotating) for throw in throws), *weights):
         if some(weight.product != 0):
@@ -135,18 +139,21 @@ class Unbalanced:
     """
 
     def __init__(self, parts: Sequence[Contribution], z_0: Number | None) -> None:
-        waves, places = np.array([one.waves for one in parts]), [one.place for one in parts]
+        waves, places = np.array([part.waves for part in parts]), [part.place for part in parts]
         levers = [place - z_0 for place in places if place is not None and z_0 is not None]
         self.force = _summed(waves, [1.0] * len(places))
         self.moment = _summed(waves, levers) if len(levers) == len(places) else None
         sizes = np.abs(waves[:, :, 0]).max(axis=0)
         both = (sizes + sizes[::-1])[len(sizes) // 2 + 1 :]
         orders = tuple((np.flatnonzero(both > _SHOWN * both.max()) + 1).tolist())
-        self.orders, self.next_order = orders[:_MOST], orders[_MOST] if len(orders) > _MOST else None
+        self.orders, self.next_order = (
+            orders[:_MOST],
+            orders[_MOST] if len(orders) > _MOST else None,
+        )
 
 
 def _summed(waves: ComplexArray, levers: Sequence[Number]) -> ClosedCurve:
-    terms = waves * np.array([np.broadcast_to(one, waves.shape[2]) for one in levers])[:, None]
+    terms = waves * np.array([np.broadcast_to(lever, waves.shape[2]) for lever in levers])[:, None]
     return ClosedCurve(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0)))
 
 
@@ -163,7 +170,12 @@ def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
 
 
 def _vector(
-    name: str, symbol: str, kind: str, text: str, of: Callable[[ComplexArray], Array], asked: bool = False
+    name: str,
+    symbol: str,
+    kind: str,
+    text: str,
+    of: Callable[[ComplexArray], Array],
+    asked: bool = False,
 ) -> Computed[Array | None]:
     """Return a column: a component, or the magnitude, of a vector of `BalanceColumns`; asked: on request only."""
 
@@ -182,20 +194,56 @@ class BalanceColumns(AtAngles):
 
     commands = ("balance",)
     F_x = _vector(
-        "force", "F_x", "force", "Unbalanced force along the stroke line of cylinder 1, outward from the shaft", np.real
+        "force",
+        "F_x",
+        "force",
+        "Unbalanced force along the stroke line of cylinder 1, outward from the shaft",
+        np.real,
     )
-    F_y = _vector("force", "F_y", "force", "Unbalanced force across it, 90° ahead in the sense of rotation", np.imag)
+    F_y = _vector(
+        "force",
+        "F_y",
+        "force",
+        "Unbalanced force across it, 90° ahead in the sense of rotation",
+        np.imag,
+    )
     F_free = _vector("force", "F", "force", "Magnitude of the unbalanced force", np.abs, asked=True)
-    F_x_book = _vector("book force", "F_x,0", "force", "F_x by the acceleration of first order (R 291)", np.real, True)
-    F_y_book = _vector("book force", "F_y,0", "force", "F_y by the acceleration of first order (R 291)", np.imag, True)
+    F_x_book = _vector(
+        "book force",
+        "F_x,0",
+        "force",
+        "F_x by the acceleration of first order (R 291)",
+        np.real,
+        True,
+    )
+    F_y_book = _vector(
+        "book force",
+        "F_y,0",
+        "force",
+        "F_y by the acceleration of first order (R 291)",
+        np.imag,
+        True,
+    )
     M_x = _vector("moment", "M_x", "torque", "Unbalanced moment Σ (z − z_0) F_x", np.real)
     M_y = _vector("moment", "M_y", "torque", "Unbalanced moment Σ (z − z_0) F_y", np.imag)
-    M_free = _vector("moment", "M_f", "torque", "Magnitude of the unbalanced moment", np.abs, asked=True)
+    M_free = _vector(
+        "moment", "M_f", "torque", "Magnitude of the unbalanced moment", np.abs, asked=True
+    )
     M_x_book = _vector(
-        "book moment", "M_x,0", "torque", "M_x by the acceleration of first order (R 291)", np.real, True
+        "book moment",
+        "M_x,0",
+        "torque",
+        "M_x by the acceleration of first order (R 291)",
+        np.real,
+        True,
     )
     M_y_book = _vector(
-        "book moment", "M_y,0", "torque", "M_y by the acceleration of first order (R 291)", np.imag, True
+        "book moment",
+        "M_y,0",
+        "torque",
+        "M_y by the acceleration of first order (R 291)",
+        np.imag,
+        True,
     )
     M_roll = value(
         "M_roll",
@@ -210,12 +258,18 @@ class BalanceColumns(AtAngles):
     def vector(self, name: str) -> ComplexArray | None:
         """Return a vector (n,): `force`, `moment`, `book force`, `book moment`; None where it does not exist."""
         curve, omega = self._balance.curve(name), self._balance.omega
-        return None if curve is None or omega is None else vector_at(curve, self.phi) * (omega * omega)
+        return (
+            None if curve is None or omega is None else vector_at(curve, self.phi) * (omega * omega)
+        )
 
     def rolling(self) -> Array | None:
         """Return the rolling moment (n,) in N m; None without a speed."""
         effort, roll = self._balance.effort, self._balance.roll
-        return None if effort is None or roll is None else effort.at(effort.pieces, roll, self.phi, self._within)
+        return (
+            None
+            if effort is None or roll is None
+            else effort.at(effort.pieces, roll, self.phi, self._within)
+        )
 
 
 # the whole machine
@@ -238,10 +292,18 @@ class MachineBalance(Results):
 
     _unbalanced = Heading("Unbalanced forces and moments")
     _book = "The same by the acceleration of first order (R 291)"
-    F_free_max = value("F_max", "force", "Largest unbalanced force", lambda one: one.largest("force"))
-    F_free_max_book = value("F_0,max", "force", _book, lambda one: one.largest_of_book("book force"))
-    M_free_max = value("M_f,max", "torque", "Largest unbalanced moment", lambda one: one.largest("moment"))
-    M_free_max_book = value("M_f,0,max", "torque", _book, lambda one: one.largest_of_book("book moment"))
+    F_free_max = value(
+        "F_max", "force", "Largest unbalanced force", lambda one: one.largest("force")
+    )
+    F_free_max_book = value(
+        "F_0,max", "force", _book, lambda one: one.largest_of_book("book force")
+    )
+    M_free_max = value(
+        "M_f,max", "torque", "Largest unbalanced moment", lambda one: one.largest("moment")
+    )
+    M_free_max_book = value(
+        "M_f,0,max", "torque", _book, lambda one: one.largest_of_book("book moment")
+    )
     M_roll_max = value(
         "M_roll,max",
         "torque",
@@ -261,7 +323,11 @@ class MachineBalance(Results):
         "u",
         "unbalance",
         "Vector sum of the given counterweights, mass times radius",
-        lambda one: abs(sum(weight.product for weight in one.counterweights)) if one.counterweights else None,
+        lambda one: (
+            abs(sum(weight.product for weight in one.counterweights))
+            if one.counterweights
+            else None
+        ),
     )
     # it cancels the forward rotating vector of order 1
     _direction = "Its direction from throw 1"
@@ -271,14 +337,18 @@ class MachineBalance(Results):
         "Counterweight balancing all rotating and half of the reciprocating mass",
         lambda one: one.shown(abs(one.forward)),
     )
-    counterweight_best_angle = value("α_1", "angle", _direction, lambda one: one.angle_of(-one.forward))
+    counterweight_best_angle = value(
+        "α_1", "angle", _direction, lambda one: one.angle_of(-one.forward)
+    )
     counterweight_least = value(
         "u_min",
         "unbalance",
         "Counterweight that minimises the largest unbalanced force",
         lambda one: one.shown(abs(one.least)),
     )
-    counterweight_least_angle = value("α_min", "angle", _direction, lambda one: one.angle_of(one.least))
+    counterweight_least_angle = value(
+        "α_min", "angle", _direction, lambda one: one.angle_of(one.least)
+    )
     share_best = value(
         "c_min",
         "ratio",
@@ -293,29 +363,50 @@ class MachineBalance(Results):
     )
 
     _locomotive = Heading("Locomotive")
-    counterweight_wheel = value("u_R", "unbalance", "Largest counterweight of a wheel, mass times radius")
+    counterweight_wheel = value(
+        "u_R", "unbalance", "Largest counterweight of a wheel, mass times radius"
+    )
     train_speed = value("v_z", "velocity", "Speed of the train")
     traction_variation = value("F_z", "force", "Largest variation of the tractive force")
     swaying_couple = value("M_s", "torque", "Largest swaying couple, about the vertical axis")
-    hammer_blow = value("H", "force", "Hammer blow: amplitude by which a counterweight loads and lifts its wheel")
-    hammer_speed = value("n_H", "speed", "Speed of rotation at which the hammer blow equals the wheel load")
-    hammer_train_speed = value("v_H", "velocity", "Speed of the train at which the hammer blow equals the wheel load")
+    hammer_blow = value(
+        "H", "force", "Hammer blow: amplitude by which a counterweight loads and lifts its wheel"
+    )
+    hammer_speed = value(
+        "n_H", "speed", "Speed of rotation at which the hammer blow equals the wheel load"
+    )
+    hammer_train_speed = value(
+        "v_H", "velocity", "Speed of the train at which the hammer blow equals the wheel load"
+    )
     share_allowed = value(
-        "c_H", "ratio", "Largest share of the reciprocating masses that keeps the hammer blow within its limit"
+        "c_H",
+        "ratio",
+        "Largest share of the reciprocating masses that keeps the hammer blow within its limit",
     )
 
     def __init__(self, effort: TurningEffort, compare: bool = False) -> None:
         machine = self.machine = effort.machine
-        self.count, self._cylinders, self._turning, self._compare = effort.count, effort.cylinders, effort, compare
+        self.count, self._cylinders, self._turning, self._compare = (
+            effort.count,
+            effort.cylinders,
+            effort,
+            compare,
+        )
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
         self.throws = tuple(
-            throw for throw in throws_with_masses(machine, first) if machine.cylinders[throw.number].masses
+            throw
+            for throw in throws_with_masses(machine, first)
+            if machine.cylinders[throw.number].masses
         )
         if not any(some(one.mass != 0) or some(one.rotating != 0) for one in self.throws):
-            raise UsageError(f"{machine.name}: no moving masses to balance; give 'masses' to its cylinders")
+            raise UsageError(
+                f"{machine.name}: no moving masses to balance; give 'masses' to its cylinders"
+            )
         for throw in self.throws:
             if throw.cylinder.mechanism.quick_return:
-                raise UsageError(f"{throw.name}: the masses of a quick-return mechanism are not known")
+                raise UsageError(
+                    f"{throw.name}: the masses of a quick-return mechanism are not known"
+                )
         self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
         self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
         self.counterweights = tuple(counterweights_of(machine, self.throws))
@@ -330,14 +421,18 @@ class MachineBalance(Results):
     # unbalanced vectors, all divided by ω²
 
     def _with(self, weights: Sequence[Weight], book: bool = False) -> Unbalanced:
-        return Unbalanced(parts_of(self.throws, weights, book, self.count or 1), self.z_0)
+        return Unbalanced(contributions_of(self.throws, weights, book, self.count or 1), self.z_0)
 
     @cached_property
     def _weights(self) -> tuple[Weight, ...]:
         """The weights in the machine file, on the crank and on balance shafts."""
         shafts = (
-            Weight(one.product * unit_vector(one.angle), -one.order if one.against else one.order, one.axial_position)
-            for one in self.machine.balance_shafts
+            Weight(
+                balance_shaft.product * unit_vector(balance_shaft.angle),
+                -balance_shaft.order if balance_shaft.against else balance_shaft.order,
+                balance_shaft.axial_position,
+            )
+            for balance_shaft in self.machine.balance_shafts
         )
         return (*self.counterweights, *shafts)
 
@@ -354,7 +449,10 @@ class MachineBalance(Results):
     @cached_property
     def book(self) -> Unbalanced | None:
         """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
-        if any(book_curvature(one.cylinder.mechanism, CrankAngle.of(0.0)) is None for one in self.throws):
+        if any(
+            book_curvature(throw.cylinder.mechanism, CrankAngle.of(0.0)) is None
+            for throw in self.throws
+        ):
             return None
         return self._with(self._weights, book=True)
 
@@ -409,7 +507,9 @@ class MachineBalance(Results):
         if self.effort is None:
             return None
         changing = [
-            Term(-1.0, one, angular_momentum_rate) for one in self.effort.groups if changes_angular_momentum(one[0])
+            Term(-1.0, group, angular_momentum_rate)
+            for group in self.effort.groups
+            if changes_angular_momentum(group[0])
         ]
         return self.effort.sampled(changing) - self.effort.M
 
@@ -423,7 +523,11 @@ class MachineBalance(Results):
     @property
     def cycle(self) -> float:
         """Period in degrees: one revolution, or the cycle of the machine where gas forces are in the rolling moment."""
-        return 360.0 * (self.machine.revolutions if any(one.drive.has_gas for one in self._cylinders) else 1)
+        return 360.0 * (
+            self.machine.revolutions
+            if any(cylinder.drive.has_gas for cylinder in self._cylinders)
+            else 1
+        )
 
     @property
     def breaks(self) -> Array:
@@ -451,7 +555,9 @@ class MachineBalance(Results):
         u on the crank adds u, so that max |F + u e^{iφ}| is smallest where −u is the centre of the smallest circle that
         encloses the curve.
         """
-        return -np.asarray(unless_cancelled(self.forward + self.smallest_circle[0], np.abs(self.forward)))
+        return -np.asarray(
+            unless_cancelled(self.forward + self.smallest_circle[0], np.abs(self.forward))
+        )
 
     def angle_of(self, product: ComplexArray) -> Any:
         """Return the direction of a weight (machines,) from throw 1 in degrees, in (−180, 180]; none for no weight."""
@@ -477,7 +583,7 @@ class MachineBalance(Results):
         """The two correction planes in m: those given, else of the wheels, else of the outer cylinders; or ()."""
         given = self.machine.counterweights
         named = () if isinstance(given, tuple) else given.planes
-        places = [one.place for one in self.throws if one.place is not None]
+        places = [throw.place for throw in self.throws if throw.place is not None]
         outer = (min(places), max(places)) if places and min(places) < max(places) else ()
         return named or self.wheels or outer
 
@@ -491,7 +597,9 @@ class MachineBalance(Results):
         force, moment = (complex(one.of(order)[0]) for one in (self.bare.force, self.bare.moment))
         first, second = self.planes
         far = ((first - self.z_0) * force - moment) / (second - first)
-        return Weight((-force - far) / order**2, order, first), Weight(far / order**2, order, second)
+        return Weight((-force - far) / order**2, order, first), Weight(
+            far / order**2, order, second
+        )
 
     @cached_property
     def best_in_planes(self) -> tuple[Weight, ...]:
@@ -527,8 +635,15 @@ class MachineBalance(Results):
         of: `all`, counterweights and rotating masses; `counterweights`, these alone; `reciprocating`, the reciprocating
         masses as if they turned with the crank.
         """
-        weights = [(one.name, one.weight(one.mass if of == "reciprocating" else one.rotating)) for one in self.throws]
-        added = [] if of == "reciprocating" else [("counterweights", one) for one in self.counterweights]
+        weights = [
+            (throw.name, throw.weight(throw.mass if of == "reciprocating" else throw.rotating))
+            for throw in self.throws
+        ]
+        added = (
+            []
+            if of == "reciprocating"
+            else [("counterweights", counterweight) for counterweight in self.counterweights]
+        )
         each = added if of == "counterweights" else [*weights, *added]
         pairs = [split_by_lever(one, self.wheels, owner) for owner, one in each]
         return sum(near.product for near, _ in pairs), sum(far.product for _, far in pairs)
@@ -554,7 +669,9 @@ class MachineBalance(Results):
         if omega is not None and some(omega != 0):
             found["hammer_blow"], blow = most * (omega * omega), whole * (omega * omega)
             if given.hammer_limit is not None:
-                found["share_allowed"] = given.hammer_limit / where(blow > given.hammer_limit, blow, given.hammer_limit)
+                found["share_allowed"] = given.hammer_limit / where(
+                    blow > given.hammer_limit, blow, given.hammer_limit
+                )
             if given.wheel_diameter is not None:
                 found["train_speed"] = given.wheel_diameter / 2 * omega
         if given.wheel_load is not None and some(most != 0):

@@ -31,7 +31,7 @@ from kurbel.machine.batch import taken
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved
-from kurbel.quantity import Answers, value, values_for
+from kurbel.quantity import ValuesById, value, values_for
 from kurbel.solver.effort import position
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
@@ -66,7 +66,10 @@ class BearingColumns(AtAngles):
 
     commands = ("bearings",)
     load = value(
-        "F_L", "force", "Load of a rod on its pin, or of the shaft on a main bearing", lambda columns: columns.size
+        "F_L",
+        "force",
+        "Load of a rod on its pin, or of the shaft on a main bearing",
+        lambda columns: columns.size,
     )
     load_direction = values_for(
         FRAMES,
@@ -104,25 +107,35 @@ class Bearing(Results):
     load_max = value("F_L,max", "force", "Largest load")
     load_min = value("F_L,min", "force", "Smallest load")
     load_mean = value("F_L,m", "force", "Mean load over time")
-    load_high = value("F_L,m,½", "force", "Mean load over the time in which it exceeds half the largest")
+    load_high = value(
+        "F_L,m,½", "force", "Mean load over the time in which it exceeds half the largest"
+    )
     unloaded_arc = value("Δε_Z", "angle", "Arc of the pin or journal that is never loaded")
     unloaded_middle = value("ε_Z", "angle", "Middle of its widest part, in the frame of the pin")
     unloaded_arc_shell = value("Δε_L", "angle", "Arc of the shell that is never loaded")
-    unloaded_middle_shell = value("ε_L", "angle", "Middle of its widest part, in the frame of the shell")
+    unloaded_middle_shell = value(
+        "ε_L", "angle", "Middle of its widest part, in the frame of the shell"
+    )
     pressure_max = value("p_L,max", "pressure", "Largest pressure, load over d l")
     pressure_mean = value("p_L,m", "pressure", "Mean pressure over time")
     rubbing_speed_max = value("v_L,max", "velocity", "Largest sliding speed of the surfaces")
     rubbing_speed_mean = value("v_L,m", "velocity", "Mean sliding speed of the surfaces")
     pressure_velocity = value("k_L", "pressure_velocity", "Mean pressure times mean speed, p v")
-    work_rubbing = value("A_f,L", "energy", "Friction work per cycle", lambda one: one.friction_work())
+    work_rubbing = value(
+        "A_f,L", "energy", "Friction work per cycle", lambda one: one.friction_work()
+    )
 
-    def __init__(self, name: str, cylinders: Sequence[CylinderForces], size: Size, surfaces: tuple[str, str]) -> None:
+    def __init__(
+        self, name: str, cylinders: Sequence[CylinderForces], size: Size, surfaces: tuple[str, str]
+    ) -> None:
         self.name, self.cylinders, self.size = name, tuple(cylinders), size
         self.journal, self.shell = surfaces
         drive = cylinders[0].drive
         self.machine, self.count, self.omega = drive.machine, drive.count, drive.omega
         cycle = 360.0 * self.machine.revolutions
-        self._common = common([(one.pieces, position(one)) for one in cylinders], cycle)
+        self._common = common(
+            [(cylinder.pieces, position(cylinder)) for cylinder in cylinders], cycle
+        )
 
     @abstractmethod
     def _frames(self, degrees: Array, within: Array) -> Frames:
@@ -157,20 +170,29 @@ class Bearing(Results):
         return result(values, self.count)
 
     @cached_property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The key values by id in SI; those that need sizes or speed only if these are given."""
         pieces, load, surfaces = self._cycle
-        ends, mean = pieces.extremes(load[None]).each(self._result)[0], self._result(pieces.mean(load))
-        found: Answers = {"load_max": ends.largest, "load_min": ends.smallest, "load_mean": mean}
-        found["load_high"] = self._result(mean_of_high(pieces, load, np.atleast_1d(ends.largest.value)))
+        ends, mean = (
+            pieces.extremes(load[None]).each(self._result)[0],
+            self._result(pieces.mean(load)),
+        )
+        found: ValuesById = {"load_max": ends.largest, "load_min": ends.smallest, "load_mean": mean}
+        found["load_high"] = self._result(
+            mean_of_high(pieces, load, np.atleast_1d(ends.largest.value))
+        )
         for surface, ending in zip(surfaces, ("", "_shell")):
-            for id, degrees in zip(("unloaded_arc", "unloaded_middle"), unloaded(pieces, surface, self.contact)):
+            for id, degrees in zip(
+                ("unloaded_arc", "unloaded_middle"), unloaded(pieces, surface, self.contact)
+            ):
                 none = self.count is None and math.isnan(degrees[0])
                 found[id + ending] = None if none else self._result(degrees)
 
         diameter, length = self.size
         if diameter is not None and length is not None:
-            found["pressure_max"] = Extreme(ends.largest.value / (diameter * length), ends.largest.degrees)
+            found["pressure_max"] = Extreme(
+                ends.largest.value / (diameter * length), ends.largest.degrees
+            )
             found["pressure_mean"] = mean / (diameter * length)
         if diameter is not None and self.omega is not None:
             surface_speed, (fastest, rate) = self.omega * diameter / 2, self.turning()
@@ -225,7 +247,11 @@ class RodPin(Bearing):
     def friction_work(self) -> Number | None:
         """That of `kurbel forces`, over the cycle of the machine; see `Bearing`."""
         work = self._own.friction_works.get(self._pin)
-        return None if work is None else work * (self.machine.revolutions // self._own.drive.revolutions)
+        return (
+            None
+            if work is None
+            else work * (self.machine.revolutions // self._own.drive.revolutions)
+        )
 
 
 class MainBearing(Bearing):
@@ -237,14 +263,21 @@ class MainBearing(Bearing):
     contact = 0.0
 
     def __init__(
-        self, name: str, number: int, line: SupportedShaft, every: Sequence[CylinderForces], size: Size
+        self,
+        name: str,
+        number: int,
+        line: SupportedShaft,
+        every: Sequence[CylinderForces],
+        size: Size,
     ) -> None:
         throws = [throw for throw in line.throws if number in (throw.A, throw.B)]
         self._members = {index: every[index] for throw in throws for index in throw.cylinders}
         super().__init__(name, (*self._members.values(),), size, ("throw", "engine"))
         self._number, self._line = number, line
 
-    def _force(self, line: SupportedShaft, pins: Mapping[int, Force], degrees: Array) -> ComplexArray:
+    def _force(
+        self, line: SupportedShaft, pins: Mapping[int, Force], degrees: Array
+    ) -> ComplexArray:
         """Return the force in N in the frame of crank 1, whose angles in degrees these are.
 
         line: with the numbers of the machines whose angles they are; pins: D + iT on the crank pin of each cylinder.
@@ -252,7 +285,10 @@ class MainBearing(Bearing):
         force = np.zeros(degrees.shape, complex)
         for throw in line.throws:
             if self._number in (throw.A, throw.B):
-                cylinder, rods = line.machine.cylinders[throw.cylinders[0]], [pins[index] for index in throw.cylinders]
+                cylinder, rods = (
+                    line.machine.cylinders[throw.cylinders[0]],
+                    [pins[index] for index in throw.cylinders],
+                )
                 # whole turns are taken off, which is exact: next to a large position an angle would lose its digits
                 angle = CrankAngle.of(degrees - np.fmod(cylinder.crank_position, 360.0))
                 on_A, on_B = line.reactions(throw, rods, cylinder, angle)
@@ -261,7 +297,10 @@ class MainBearing(Bearing):
         return force
 
     def _frames(self, degrees: Array, within: Array) -> Frames:
-        pins = {number: pin_load(state_at(own, degrees, within)) for number, own in self._members.items()}
+        pins = {
+            number: pin_load(state_at(own, degrees, within))
+            for number, own in self._members.items()
+        }
         throw = self._force(self._line, pins, degrees)
         return {"throw": throw, "engine": throw * unit_vector(degrees)}
 
@@ -271,7 +310,11 @@ class MainBearing(Bearing):
         for number, own in self._members.items():
             state = own.samples if rubbed else own.samples.without_pin_friction
             (pins[number],) = resampled(pieces, own, pin_load(state))
-        line = self._line if self.count is None else SupportedShaft(taken(self.machine, pieces.machine))
+        line = (
+            self._line
+            if self.count is None
+            else SupportedShaft(taken(self.machine, pieces.machine))
+        )
         return self._force(line, pins, pieces.degrees)
 
     def _samples(self) -> Sequence[ComplexArray]:
@@ -280,15 +323,19 @@ class MainBearing(Bearing):
 
     def friction_work(self) -> Number | None:
         """∮ f |F| d/2 dφ with the force F without the friction of the pins; see `Bearing`."""
-        given = [one.drive.cylinder.friction for one in self.cylinders]
-        coefficient = next((one.journals for one in given if one and one.journals is not None), None)
+        given = [cylinder.drive.cylinder.friction for cylinder in self.cylinders]
+        coefficient = next(
+            (one.journals for one in given if one and one.journals is not None), None
+        )
         if coefficient is None or self.size[0] is None:
             return None
         pieces, load, _ = with_magnitude(self._common, [self._sampled(rubbed=False)])
         return self._result(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
-def with_magnitude(pieces: Pieces, loads: Sequence[ComplexArray]) -> tuple[Pieces, Array, ComplexArray]:
+def with_magnitude(
+    pieces: Pieces, loads: Sequence[ComplexArray]
+) -> tuple[Pieces, Array, ComplexArray]:
     """Return pieces on which the magnitude of a load is a polynomial, with that in N and the loads there.
 
     loads: one load as it is seen in several frames, each (nodes, pieces).
@@ -296,7 +343,11 @@ def with_magnitude(pieces: Pieces, loads: Sequence[ComplexArray]) -> tuple[Piece
     parts = real_parts(loads, pieces.degrees.shape)
     largest = pieces.largest(np.abs(loads[0]))
     fine, load, parts = resolved(
-        pieces, parts, parts[:2], np.stack((largest, largest)), lambda some, found: np.hypot(*found[:2])[None]
+        pieces,
+        parts,
+        parts[:2],
+        np.stack((largest, largest)),
+        lambda some, found: np.hypot(*found[:2])[None],
     )
     return fine, load[0], parts[::2] + 1j * parts[1::2]
 
@@ -397,7 +448,10 @@ class ShaftBearings:
     def parts(self) -> tuple[Bearing, ...]:
         """Crank pin and crosshead pin of every cylinder, then the main bearings along the shaft."""
         pins = (
-            pin for number, one in enumerate(self._cylinders) if _loads_pins(one) for pin in self._pins(number, one)
+            pin
+            for number, one in enumerate(self._cylinders)
+            if _loads_pins(one)
+            for pin in self._pins(number, one)
         )
         return (*pins, *self._main_bearings())
 
@@ -409,16 +463,31 @@ class ShaftBearings:
             rods = len(self.line.throw_of(number).cylinders) if self.line else 1
             pin = shaft.pin_diameter, shaft.pin_length / rods
         yield RodPin(f"crank pin{of}", own, pin, "crank_pin")
-        crosshead = (friction.crosshead_pin_diameter, friction.crosshead_pin_length) if friction else (None, None)
+        crosshead = (
+            (friction.crosshead_pin_diameter, friction.crosshead_pin_length)
+            if friction
+            else (None, None)
+        )
         yield RodPin(f"crosshead pin{of}", own, crosshead, "crosshead_pin")
 
     def _main_bearings(self) -> Iterator[MainBearing]:
         if self.line is None:
             return
-        shaft, frictions = self.line.shaft, [one.friction for one in self.machine.cylinders]
-        diameters = (shaft.journal_diameter, *(one.journal_diameter for one in frictions if one))
-        size = next((one for one in diameters if one is not None), None), shaft.journal_length
-        for number, name in enumerate("AB" if self.line.bearings == 2 else range(1, self.line.bearings + 1)):
+        shaft, frictions = (
+            self.line.shaft,
+            [cylinder.friction for cylinder in self.machine.cylinders],
+        )
+        diameters = (
+            shaft.journal_diameter,
+            *(friction.journal_diameter for friction in frictions if friction),
+        )
+        size = (
+            next((diameter for diameter in diameters if diameter is not None), None),
+            shaft.journal_length,
+        )
+        for number, name in enumerate(
+            "AB" if self.line.bearings == 2 else range(1, self.line.bearings + 1)
+        ):
             yield MainBearing(f"bearing {name}", number, self.line, self._cylinders, size)
 
 

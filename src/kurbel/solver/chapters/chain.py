@@ -149,7 +149,9 @@ def response(
     nothing damps has no answer: it is not finite.
     """
     omegas, sides = frequencies.ravel(), torques.reshape(len(torques), -1)
-    damping = chain.mass_damping[:, None] + np.broadcast_to(load_damping, torques.shape).reshape(sides.shape)
+    damping = chain.mass_damping[:, None] + np.broadcast_to(load_damping, torques.shape).reshape(
+        sides.shape
+    )
     twists, springs = chain.twists, chain.springs(omegas)
     # what a segment has of inertia at its ends
     alpha = chain.waves(omegas, springs)
@@ -158,7 +160,9 @@ def response(
     inertias = chain.inertias[:, None] + np.abs(twists).T @ at_ends
     # a pivot of exactly zero is none: it ends as inf
     of_masses = 1j * (damping * omegas + np.finfo(float).tiny) - inertias * omegas**2
-    matrices = (twists.T * springs.T[:, None]) @ twists + of_masses.T[:, :, None] * np.eye(len(of_masses))
+    matrices = (twists.T * springs.T[:, None]) @ twists + of_masses.T[:, :, None] * np.eye(
+        len(of_masses)
+    )
 
     def solved(sides: ComplexArray) -> ComplexArray:
         return np.linalg.solve(matrices, sides.T[:, :, None])[:, :, 0].T
@@ -190,12 +194,18 @@ def loss(chain: Chain, frequencies: Array, angles: ComplexArray) -> Array:
 
     Without inertia Ω² d |Δθ|²/2 and Ω k η |Δθ|²/2; with inertia what enters at one end less what leaves at the other.
     """
-    of_springs = chain.springs(frequencies).imag * frequencies * np.abs(np.tensordot(chain.twists, angles, 1)) ** 2
+    of_springs = (
+        chain.springs(frequencies).imag
+        * frequencies
+        * np.abs(np.tensordot(chain.twists, angles, 1)) ** 2
+    )
     heavy = np.flatnonzero(chain.segment_inertias).tolist()
     before, behind = (np.tensordot(matrix[heavy], angles, 1) for matrix in chain.ends)
     entering = passing(chain, frequencies, angles, [(segment, 0.0) for segment in heavy])
     leaving = passing(chain, frequencies, angles, [(segment, 1.0) for segment in heavy])
-    of_springs[heavy] = (1j * frequencies * (entering.conj() * before - leaving.conj() * behind)).real
+    of_springs[heavy] = (
+        1j * frequencies * (entering.conj() * before - leaving.conj() * behind)
+    ).real
     return of_springs / 2
 
 
@@ -236,7 +246,9 @@ class Tree:
         root = count - 1
         if root_segment is not None:
             root = max(chain.joins[root_segment])
-            self.links[root] = next(link for link in neighbours[root] if link.segment == root_segment)
+            self.links[root] = next(
+                link for link in neighbours[root] if link.segment == root_segment
+            )
         self.root, self.root_segment = root, root_segment
         outward = [root]
         for mass in outward:
@@ -395,8 +407,13 @@ def holzer_at(chain: Chain, omega: float) -> Holzer:
     for mass, link in tree.path_to_root(0):
         angles[mass] = angle
         arriving = [bars.from_ground(segment) for segment in tree.fixed[mass]]
-        arriving += [quotients.arriving[child] for child in tree.children[mass] if child not in on_path]
-        torque += sum(float(quotient[0]) for quotient in arriving) * angle + float(quotients.own[mass][0]) * angle
+        arriving += [
+            quotients.arriving[child] for child in tree.children[mass] if child not in on_path
+        ]
+        torque += (
+            sum(float(quotient[0]) for quotient in arriving) * angle
+            + float(quotients.own[mass][0]) * angle
+        )
         on_path.add(mass)
         if link is None:
             left = torque
@@ -412,7 +429,9 @@ def holzer_at(chain: Chain, omega: float) -> Holzer:
         if mass not in on_path and link is not None:
             angles[mass] = angles[link.parent] / _not_zero(quotients.ratios[mass])[0]
             at_mass = quotients.at[mass][0] * angles[mass]
-            torques.set(link, at_mass, float(bars.onward(link.segment, angles[mass], at_mass)[1][0]))
+            torques.set(
+                link, at_mass, float(bars.onward(link.segment, angles[mass], at_mass)[1][0])
+            )
         for segment in tree.fixed[mass]:
             torques.set_fixed(chain, segment, bars, angles[mass])
     return Holzer(angles, torques.before, torques.behind, left)
@@ -491,7 +510,9 @@ class Modes:
         if root_link is not None:
             from_root[tree.root] = bars.from_ground(root_link.segment)
         for mass in reversed(tree.leaves_first):
-            fixed = sum((bars.from_ground(segment) for segment in tree.fixed[mass]), start=np.zeros(1))
+            fixed = sum(
+                (bars.from_ground(segment) for segment in tree.fixed[mass]), start=np.zeros(1)
+            )
             for child in tree.children[mass]:
                 # the sum without the child; the whole less the child would cancel
                 others = [inward.arriving[other] for other in tree.children[mass] if other != child]
@@ -501,7 +522,9 @@ class Modes:
                 ratio, torque = bars.onward(link.segment, 1.0, of_rest[child])
                 from_root[child] = torque / _not_zero(ratio)
 
-        gaps = np.array([float((inward.at[mass] + from_root[mass])[0]) for mass in range(len(chain.inertias))])
+        gaps = np.array(
+            [float((inward.at[mass] + from_root[mass])[0]) for mass in range(len(chain.inertias))]
+        )
         meeting = int(np.argmin(np.abs(gaps) / chain.lumped))
 
         # from there outward: to the root, then to the leaves
@@ -524,7 +547,9 @@ class Modes:
             if mass not in on_path and link is not None:
                 angles[mass] = angles[link.parent] / _not_zero(inward.ratios[mass])[0]
                 at_mass = inward.at[mass][0] * angles[mass]
-                torques.set(link, at_mass, float(bars.onward(link.segment, angles[mass], at_mass)[1][0]))
+                torques.set(
+                    link, at_mass, float(bars.onward(link.segment, angles[mass], at_mass)[1][0])
+                )
             for segment in tree.fixed[mass]:
                 torques.set_fixed(chain, segment, bars, angles[mass])
 
@@ -555,8 +580,13 @@ class Modes:
             alpha = float(waves[segment])
             if alpha > 0:
                 # θ₁ cos αx − T₁/(k α) sin αx, whose zeros are half a wave apart
-                first = math.atan2(angle, table.torques[segment] / (chain.stiffnesses[segment] * alpha))
-                shares = [(first + number * math.pi) / alpha for number in range(-1, math.ceil(alpha / math.pi) + 2)]
+                first = math.atan2(
+                    angle, table.torques[segment] / (chain.stiffnesses[segment] * alpha)
+                )
+                shares = [
+                    (first + number * math.pi) / alpha
+                    for number in range(-1, math.ceil(alpha / math.pi) + 2)
+                ]
             else:
                 shares = [angle / (angle - far)] if angle * far < 0 else []
             last = 1 - _ROUNDING if far == 0 else 1.0
@@ -597,19 +627,28 @@ class ChainEquation:
         law: SpeedLaw | None = None,
         loaded: int = 0,
     ) -> None:
-        self._source, self._driving, self._law, self.noise = pieces, driving, law, np.zeros(pieces.count)
+        self._source, self._driving, self._law, self.noise = (
+            pieces,
+            driving,
+            law,
+            np.zeros(pieces.count),
+        )
         self._order, omega = (np.broadcast_to(one, pieces.count) for one in (order, omega))
         parts = np.ceil(2 * pieces.half * self._order[pieces.machine] / _SWING).clip(1, _MOST_PARTS)
         self.pieces = pieces.parted(parts.astype(int))
 
         numbers = (chain.inertias, chain.stiffnesses, chain.segment_damping, chain.mass_damping)
-        inertias, stiffnesses, self._damping, self._against = (one.reshape(len(one), -1) for one in numbers)
+        inertias, stiffnesses, self._damping, self._against = (
+            number.reshape(len(number), -1) for number in numbers
+        )
         self._twists, self._speeds = chain.twists, 1 / (inertias * omega)
         self._springs = stiffnesses / (omega * self._order)
         self.unknowns = sum(chain.twists.shape)
         self.bounded = len(chain.stiffnesses) + loaded if law else None
         self._height = inertias[loaded] * omega**2
-        unit = np.broadcast_to(np.eye(self.unknowns)[..., None], (self.unknowns, self.unknowns, pieces.count))
+        unit = np.broadcast_to(
+            np.eye(self.unknowns)[..., None], (self.unknowns, self.unknowns, pieces.count)
+        )
         self._matrix = self._flow(unit, np.arange(pieces.count))[1]
 
     def _flow(self, y: Array, machine: Indices) -> tuple[Array, Array]:
@@ -618,13 +657,17 @@ class ChainEquation:
         speeds = y[segments:] * self._speeds[:, None, machine]
         apart = np.tensordot(self._twists, speeds, 1)
         torques = self._order[machine] * y[:segments] + self._damping[:, None, machine] * apart
-        masses = -np.tensordot(self._twists.T, torques, 1) - self._against[:, None, machine] * speeds
+        masses = (
+            -np.tensordot(self._twists.T, torques, 1) - self._against[:, None, machine] * speeds
+        )
         return torques, np.concatenate((self._springs[:, None, machine] * apart, masses))
 
     def known(self, pieces: Pieces) -> Array:
         """Return the torques on the masses, and J ω_n² of the one under the load: less by so much, it stands still."""
         torques = pieces.carried(self._driving, self._source)
-        return np.concatenate((torques, np.broadcast_to(pieces.of(self._height), (1, *torques.shape[1:]))))
+        return np.concatenate(
+            (torques, np.broadcast_to(pieces.of(self._height), (1, *torques.shape[1:])))
+        )
 
     def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return y′ and its derivative by y."""

@@ -56,10 +56,16 @@ class ElasticCoupling(SpeedLine):
     """
 
     M_coupling_max = value(
-        "M_K,max", "torque", "Largest torque in the elastic coupling", lambda one: one.torque_extremes.largest
+        "M_K,max",
+        "torque",
+        "Largest torque in the elastic coupling",
+        lambda one: one.torque_extremes.largest,
     )
     M_coupling_min = value(
-        "M_K,min", "torque", "Smallest torque in the elastic coupling", lambda one: one.torque_extremes.smallest
+        "M_K,min",
+        "torque",
+        "Smallest torque in the elastic coupling",
+        lambda one: one.torque_extremes.smallest,
     )
     amplification = value(
         "V",
@@ -75,11 +81,17 @@ class ElasticCoupling(SpeedLine):
             np.broadcast_to(one, own.shape)
             for one in (effort.omega, coupling.stiffness, coupling.damping, coupling.inertia)
         )
-        self.effort, self._order, self._step = effort, natural_order(coupling, own, effort.omega), 360 / effort.cycle
+        self.effort, self._order, self._step = (
+            effort,
+            natural_order(coupling, own, effort.omega),
+            360 / effort.cycle,
+        )
         self._masses, self._stiffness = np.stack((own, driven)), stiffness
         self.load_slope = np.zeros(own.shape) if law is None else law.steepness / effort.omega
         load = effort.load - pieces.of(effort.mean)
-        self._torques = np.stack((effort.true_excess.torque + load, -load))  # on either mass, less the mean
+        self._torques = np.stack(
+            (effort.true_excess.torque + load, -load)
+        )  # on either mass, less the mean
 
         nothing = np.zeros((2, *own.shape))
         chain = Chain(
@@ -101,7 +113,9 @@ class ElasticCoupling(SpeedLine):
             failed = failed | (law.mean == 0)
         else:
             nearest = np.maximum(np.rint(self._order / self._step), 1) * self._step
-            endless = ~(pieces.largest(torque) < _ENDLESS * effort.pieces.largest(self._torques).sum(axis=0))
+            endless = ~(
+                pieces.largest(torque) < _ENDLESS * effort.pieces.largest(self._torques).sum(axis=0)
+            )
             meets = (self._damping == 0) & (np.abs(self._order / nearest - 1) < _MEETS)
             resonates, failed = meets & (failed | endless), failed | (meets & endless)
             if effort.count is None and resonates[0]:
@@ -140,7 +154,7 @@ class ElasticCoupling(SpeedLine):
         """Return the swing of the torque over that of J₂ (M − L)/(J₁ + J₂) + L; None where that does not swing."""
         of, (own, driven) = self.effort.pieces.of, self._masses
         rigid = (self._torques[0] * of(driven) - self._torques[1] * of(own)) / of(own + driven)
-        high, _, low, _ = (one[0] for one in self.effort.pieces.extremes(rigid[None]))
+        high, _, low, _ = (extreme[0] for extreme in self.effort.pieces.extremes(rigid[None]))
         if self.effort.count is None and high[0] == low[0]:
             return None
         found = self.torque_extremes
@@ -161,11 +175,18 @@ class ElasticCoupling(SpeedLine):
         driven += 1j * frequencies * self.load_slope[0]
         spring = self._stiffness[0] + 1j * frequencies * self._damping[0]
         with np.errstate(all="ignore"):
-            passed = np.abs(spring * (first * driven - second * own) / (own * driven + spring * (own + driven)))
+            passed = np.abs(
+                spring * (first * driven - second * own) / (own * driven + spring * (own + driven))
+            )
 
         amplitude, distance = np.abs(acting).sum(axis=0), orders / order - 1
         rigid = (np.abs(acting) * masses[::-1]).sum(axis=0) / masses.sum()
         gain = passed / np.where(rigid > 0, rigid, np.inf)
-        size = np.sqrt(2 * pieces.mean(self._torques**2)).sum()  # the amplitude of one wave with their mean squares
+        size = np.sqrt(
+            2 * pieces.mean(self._torques**2)
+        ).sum()  # the amplitude of one wave with their mean squares
         near = (amplitude > _WORTH * size) & (gain >= _AMPLIFIED)
-        return tuple(Harmonic(*row) for row in np.stack((orders, distance, amplitude, gain))[:, near].T.tolist())
+        return tuple(
+            Harmonic(*row)
+            for row in np.stack((orders, distance, amplitude, gain))[:, near].T.tolist()
+        )

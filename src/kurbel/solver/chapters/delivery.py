@@ -34,10 +34,10 @@ from kurbel.machine.pumped import Gas, Pipe, Pump, Vessel
 from kurbel.numerics.arithmetic import every, some, total, unless_cancelled, where
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import Answers, value, values_for
+from kurbel.quantity import ValuesById, value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort, position
-from kurbel.solver.figures import AtAngles, Results, Searched, result
+from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, result
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.state import State
 
@@ -49,7 +49,7 @@ _CANCELLED = 4e-14
 # pistons that deliver
 
 
-class Driven(NamedTuple):
+class DrivenPiston(NamedTuple):
     """A driven piston: its number among those of the cylinder, its pressures, and which of its ends deliver."""
 
     number: int
@@ -59,17 +59,19 @@ class Driven(NamedTuple):
     pumps: bool
 
 
-def driven_pistons(drive: Drive) -> Iterator[Driven]:
+def driven_pistons(drive: Drive) -> Iterator[DrivenPiston]:
     """Yield the pistons of a cylinder that are driven by it; raises UsageError where many machines differ in that."""
     for gas in drive.gas:
         chambers = list(gas.piston.chambers.values())
-        ideal = any(isinstance(one, Compressor) for one in chambers)
+        ideal = any(isinstance(chamber, Compressor) for chamber in chambers)
         if _agreed(gas.work < 0) or (ideal and not _agreed(gas.work > 0)):
             number = drive.cylinder.pistons.index(gas.piston)
             works = iter(gas.works)
-            head, crank = (end is not None and _agreed(next(works) < 0) for end in (gas.head, gas.crank))
+            head, crank = (
+                end is not None and _agreed(next(works) < 0) for end in (gas.head, gas.crank)
+            )
             pumps = not ideal and (drive.machine.pump is not None or all(map(_is_level, chambers)))
-            yield Driven(number, gas, head, crank, pumps)
+            yield DrivenPiston(number, gas, head, crank, pumps)
 
 
 def _agreed(condition: Truth) -> bool:
@@ -81,22 +83,38 @@ def _agreed(condition: Truth) -> bool:
 def _is_level(chamber: Chamber | None) -> bool:
     """Return whether a chamber has one pressure on each stroke, as a pump's has."""
     if isinstance(chamber, Card):
-        return all(np.array_equal(one, line.pressures[0]) for line in chamber.lines for one in line.pressures)
+        return all(
+            np.array_equal(pressure, line.pressures[0])
+            for line in chamber.lines
+            for pressure in line.pressures
+        )
     return isinstance(chamber, Rectangle) and not some(chamber.mean != 0)
 
 
 def _displaced(
-    state: State, piston: Driven, draws: bool = False, rises: bool = False, head: bool = True, crank: bool = True
+    state: State,
+    piston: DrivenPiston,
+    draws: bool = False,
+    rises: bool = False,
+    head: bool = True,
+    crank: bool = True,
 ) -> Array:
     """Return dV/dφ in m³ of what chambers deliver, or draw in; rises: d²V/dφ². On each stroke it is one of them.
 
     head, crank: whether that end counts.
     """
-    own = state.drive.cylinder.pistons[piston.number]  # of many machines its numbers are those of the angles
+    own = state.drive.cylinder.pistons[
+        piston.number
+    ]  # of many machines its numbers are those of the angles
     areas = own.head_area * (piston.head and head), own.crank_area * (piston.crank and crank)
     # a piston that a lever moves against the crosshead draws in where another one delivers
-    outward, back = (abs(own.lever_ratio) * area for area in (areas if draws != piston.gas.turned else areas[::-1]))
-    return np.where(state.direction > 0, outward, -back) * np.asarray(state.curvature if rises else state.slope)
+    outward, back = (
+        abs(own.lever_ratio) * area
+        for area in (areas if draws != piston.gas.turned else areas[::-1])
+    )
+    return np.where(state.direction > 0, outward, -back) * np.asarray(
+        state.curvature if rises else state.slope
+    )
 
 
 # pumps
@@ -142,7 +160,11 @@ class DeliveryState(AtAngles):
 
 
 _PIPES = {"": ("", "delivery"), "suction_": ("s,", "suction")}
-_WORKS = {"": ("R", "as they are"), "_bare": ("R,0", "without vessels"), "_steady": ("R,m", "with vessels at both")}
+_WORKS = {
+    "": ("R", "as they are"),
+    "_bare": ("R,0", "without vessels"),
+    "_steady": ("R,m", "with vessels at both"),
+}
 
 
 class Delivery(Results):
@@ -157,17 +179,32 @@ class Delivery(Results):
 
     stroke_volume = value("V_s", "volume", "Volume that the delivering chambers displace in a turn")
     flow_mean = value("q_m", "flow", "Mean flow delivered", wanted_large=True)
-    extremes = Searched()
-    volume_fluctuation = value("ΔV", "volume", "Fluctuating volume: swing of what is delivered above the mean flow")
-    vessel_volume = values_for(_PIPES, "*vessel_volume", "V_*W", "volume", "Mean volume of air in the * vessel")
+    extremes = ExtremesOfColumns()
+    volume_fluctuation = value(
+        "ΔV", "volume", "Fluctuating volume: swing of what is delivered above the mean flow"
+    )
+    vessel_volume = values_for(
+        _PIPES, "*vessel_volume", "V_*W", "volume", "Mean volume of air in the * vessel"
+    )
     vessel_swing = values_for(
-        _PIPES, "*vessel_swing", "δ_*W", "ratio", "Swing of the absolute pressure in the * vessel, over its mean"
+        _PIPES,
+        "*vessel_swing",
+        "δ_*W",
+        "ratio",
+        "Swing of the absolute pressure in the * vessel, over its mean",
     )
     suction_lift_max = value(
-        "h_s", "length", "Largest suction lift: barometer less vapour pressure and heads", wanted_large=True
+        "h_s",
+        "length",
+        "Largest suction lift: barometer less vapour pressure and heads",
+        wanted_large=True,
     )
-    pipe_work = values_for(_WORKS, "pipe_work*", "A_*", "energy", "Work against friction in the pipes per cycle, *")
-    vessel_saving = value("A_W", "ratio", "Share of the work against pipe friction that a vessel saves")
+    pipe_work = values_for(
+        _WORKS, "pipe_work*", "A_*", "energy", "Work against friction in the pipes per cycle, *"
+    )
+    vessel_saving = value(
+        "A_W", "ratio", "Share of the work against pipe friction that a vessel saves"
+    )
 
     def __init__(
         self,
@@ -200,12 +237,17 @@ class Delivery(Results):
         omega, of = self.pieces.of(self.omega), self.pieces.of
         found = {"flow": self._rate() * omega, "flow_suction": self._rate(draws=True) * omega}
         if self._both:
-            found["flow_head"], found["flow_crank"] = self._rate(crank=False) * omega, self._rate(head=False) * omega
+            found["flow_head"], found["flow_crank"] = (
+                self._rate(crank=False) * omega,
+                self._rate(head=False) * omega,
+            )
         for pipe, draws in self._pipes:
             name = "" if draws else "delivery_"
             if pipe.vessel is None:
                 scale = of(pipe.length / (GRAVITY * _section(pipe)))
-                found[f"{name}acceleration_head"] = self._rate(draws=draws, rises=True) * omega**2 * scale
+                found[f"{name}acceleration_head"] = (
+                    self._rate(draws=draws, rises=True) * omega**2 * scale
+                )
             passed = of(self._mean(draws)) if pipe.vessel else self._rate(draws=draws)
             heads = of(_friction(pipe) / GRAVITY) * (passed * omega) ** 2
             found[f"{name}friction_head"] = self.pieces.filled(heads)
@@ -231,12 +273,16 @@ class Delivery(Results):
     def _extremes(self) -> dict[str, Extremes]:
         declared = {id for id, row in self.rows.columns.items() if row.quantity.extremes}
         found = {id: values for id, values in self.sampled.items() if id in declared}
-        return dict(zip(found, self.pieces.extremes([*found.values()]).each(self._result))) if found else {}
+        return (
+            dict(zip(found, self.pieces.extremes([*found.values()]).each(self._result)))
+            if found
+            else {}
+        )
 
     @cached_property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The key values that are no extremes."""
-        found, mean = Answers(), self._mean()
+        found, mean = ValuesById(), self._mean()
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         found["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
         found["volume_fluctuation"] = swing = self._swing(draws=False)
@@ -246,7 +292,9 @@ class Delivery(Results):
                 sizes = _vessel(pipe.vessel, self._swing(draws=True), "suction")
                 found["suction_vessel_volume"], found["suction_vessel_swing"] = sizes
             elif pipe.vessel:
-                found["vessel_volume"], found["vessel_swing"] = _vessel(pipe.vessel, swing, "delivery")
+                found["vessel_volume"], found["vessel_swing"] = _vessel(
+                    pipe.vessel, swing, "delivery"
+                )
         if self.omega is None:
             return found
 
@@ -266,7 +314,12 @@ class Delivery(Results):
     def _pipe_works(self, pipe: Pipe, draws: bool) -> tuple[Number, Number, Number]:
         """Return the work in J per cycle against friction in a pipe as it is, without a vessel, and with one."""
         assert self.pump is not None
-        scale = self.pump.liquid.density * _friction(pipe) * self.omega**2 * math.radians(self.pieces.cycle)
+        scale = (
+            self.pump.liquid.density
+            * _friction(pipe)
+            * self.omega**2
+            * math.radians(self.pieces.cycle)
+        )
         bare, steady = scale * self._mean(draws, cubed=True), scale * self._mean(draws) ** 3
         return steady if pipe.vessel else bare, bare, steady
 
@@ -291,8 +344,13 @@ def _vessel(vessel: Vessel, swing: Number, place: str) -> tuple[Number, Number]:
     empties = volume <= half
     if isinstance(empties, (bool, np.bool_)) and empties:
         least, given = show(float(half), "volume"), show(volume, "volume")
-        raise UsageError(f"pump.{place}_pipe.vessel.volume: {given} would empty; it must be more than ΔV/2 = {least}")
-    ratio = where(empties, math.nan, (volume + half) / where(empties, 1.0, volume - half)) ** vessel.exponent
+        raise UsageError(
+            f"pump.{place}_pipe.vessel.volume: {given} would empty; it must be more than ΔV/2 = {least}"
+        )
+    ratio = (
+        where(empties, math.nan, (volume + half) / where(empties, 1.0, volume - half))
+        ** vessel.exponent
+    )
     return where(empties, math.nan, volume), 2 * (ratio - 1) / (ratio + 1)
 
 
@@ -305,7 +363,7 @@ class CompressorEnd:
     suction, delivery: absolute pressures in Pa, None with a drawn card or a trace.
     """
 
-    def __init__(self, drive: Drive, piston: Driven, end: str) -> None:
+    def __init__(self, drive: Drive, piston: DrivenPiston, end: str) -> None:
         self.suction: Any = None
         self.delivery: Any = None
         own, gas = piston.gas.piston, piston.gas
@@ -313,7 +371,7 @@ class CompressorEnd:
         self.owner = drive.name if piston.number == 0 else f"{drive.name}, {own.name}"
         self.end = end.replace("_", " ")
         self.loaded = not (isinstance(card, Compressor) and card.unloaded)
-        self.figures: Answers = {"stroke_volume": gas.areas[0 if head else 1] * gas.stroke}
+        self.figures: ValuesById = {"stroke_volume": gas.areas[0 if head else 1] * gas.stroke}
         if isinstance(card, Compressor):
             lift = 0.0 if gas.absolute else drive.machine.ambient
             self.suction, self.delivery = card.suction + lift, card.delivery + lift
@@ -321,11 +379,15 @@ class CompressorEnd:
             work = gas.works[0 if head or gas.head is None else 1] / gas.repeats
             self._add_figures(card, gases, drive.machine.speed, -work)
 
-    def _add_figures(self, card: Compressor, gases: Sequence[Gas], speed: Number | None, work: Number) -> None:
+    def _add_figures(
+        self, card: Compressor, gases: Sequence[Gas], speed: Number | None, work: Number
+    ) -> None:
         """Add what follows from the card, from the first gas that has what is needed, and from the speed."""
         found, ratio, n = self.figures, self.delivery / self.suction, card.exponent
         if self.loaded:
-            found["volumetric_efficiency"] = 1 - card.clearance * (ratio ** (1 / card.of_expansion) - 1)
+            found["volumetric_efficiency"] = 1 - card.clearance * (
+                ratio ** (1 / card.of_expansion) - 1
+            )
             if gases:
                 found["discharge_temperature"] = gases[0].inlet_temperature * ratio ** ((n - 1) / n)
         if speed is None:
@@ -335,16 +397,25 @@ class CompressorEnd:
         if gases:
             density = self.suction / gases[0].inlet_temperature
             found["capacity_normal"] = density * capacity * (_NORMAL[1] / _NORMAL[0])
-            constants = [one.gas_constant for one in gases if one.gas_constant is not None]
+            constants = [gase.gas_constant for gase in gases if gase.gas_constant is not None]
             if constants:
                 found["mass_flow"] = density * capacity / constants[0]
-        kappas = [one.isentropic_exponent for one in gases if one.isentropic_exponent is not None]
+        kappas = [
+            gase.isentropic_exponent for gase in gases if gase.isentropic_exponent is not None
+        ]
         if kappas:
             power = (kappas[0] - 1) / kappas[0]
             found["isentropic_power"] = self.suction * capacity * (ratio**power - 1) / power
 
 
-_OF_ALL_ENDS = ("stroke_volume", "capacity", "capacity_normal", "mass_flow", "stage_power", "isentropic_power")
+_OF_ALL_ENDS = (
+    "stroke_volume",
+    "capacity",
+    "capacity_normal",
+    "mass_flow",
+    "stage_power",
+    "isentropic_power",
+)
 _OF_LOADED_ENDS = ("volumetric_efficiency", "discharge_temperature")
 
 
@@ -355,26 +426,38 @@ class CompressorStage(Results):
 
     stroke_volume = value("V_s", "volume", "Volume that the delivering chambers displace in a turn")
     volumetric_efficiency = value(
-        "η_v", "ratio", "Volumetric efficiency of the ends that deliver", wanted_large=True, plain="eta_v"
+        "η_v",
+        "ratio",
+        "Volumetric efficiency of the ends that deliver",
+        wanted_large=True,
+        plain="eta_v",
     )
     capacity = value("V_1", "flow", "Capacity: volume flow as it is drawn in", wanted_large=True)
-    capacity_normal = value("V_N", "flow", "Volume flow at normal conditions, 0 °C and 1.01325 bar", wanted_large=True)
+    capacity_normal = value(
+        "V_N", "flow", "Volume flow at normal conditions, 0 °C and 1.01325 bar", wanted_large=True
+    )
     mass_flow = value("q_M", "mass_flow", "Mass flow", wanted_large=True)
     discharge_temperature = value("T_2", "temperature", "Temperature of what is delivered")
     stage_power = value("N_i,s", "power", "Indicated power that the stage takes")
     isentropic_power = value("N_is", "power", "Power of the compression without heat")
-    isentropic_efficiency = value("η_is", "ratio", "Isentropic over indicated power", wanted_large=True)
+    isentropic_efficiency = value(
+        "η_is", "ratio", "Isentropic over indicated power", wanted_large=True
+    )
 
     def __init__(self, ends: Sequence[CompressorEnd]) -> None:
         self.name, self.ends = ends[0].owner, tuple(ends)
         self.suction, self.delivery = ends[0].suction, ends[0].delivery
 
     @cached_property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The key values; a stage all of whose ends are unloaded delivers nothing."""
-        every = [one.figures for one in self.ends]
-        loaded = [one.figures for one in self.ends if one.loaded]
-        found = {id: sum(one[id] for one in every) for id in _OF_ALL_ENDS if all(id in one for one in every)}
+        every = [end.figures for end in self.ends]
+        loaded = [end.figures for end in self.ends if end.loaded]
+        found = {
+            id: sum(one[id] for one in every)
+            for id in _OF_ALL_ENDS
+            if all(id in one for one in every)
+        }
         for id in _OF_LOADED_ENDS:  # means
             if loaded and all(id in one for one in loaded):
                 swept = sum(one["stroke_volume"] for one in loaded)
@@ -398,13 +481,16 @@ class MachineDelivery:
     def __init__(self, effort: TurningEffort) -> None:
         self.machine, self.effort, self._count = effort.machine, effort, effort.count
         driven = [(forces, list(driven_pistons(forces.drive))) for forces in effort.cylinders]
-        self._pumps = [(forces, one) for forces, pistons in driven for one in pistons if one.pumps]
+        self._pumps = [
+            (forces, piston) for forces, pistons in driven for piston in pistons if piston.pumps
+        ]
         ends = [
-            CompressorEnd(forces.drive, one, end)
+            CompressorEnd(forces.drive, piston, end)
             for forces, pistons in driven
-            for one in pistons
-            for end, works in (("head_end", one.head), ("crank_end", one.crank))
-            if not one.pumps and (works or isinstance(one.gas.piston.chambers.get(end), Compressor))
+            for piston in pistons
+            for end, works in (("head_end", piston.head), ("crank_end", piston.crank))
+            if not piston.pumps
+            and (works or isinstance(piston.gas.piston.chambers.get(end), Compressor))
         ]
         self.stages = _staged(ends)
         if not (self._pumps or self.stages):
@@ -419,10 +505,15 @@ class MachineDelivery:
         if not self._pumps:
             return None
         pieces = self.effort.pieces
-        states = {id(forces): State.on(forces.drive, pieces.by_crank(position(forces))) for forces, _ in self._pumps}
+        states = {
+            id(forces): State.on(forces.drive, pieces.by_crank(position(forces)))
+            for forces, _ in self._pumps
+        }
         rate = self._rate_of(pieces, [(states[id(forces)], one) for forces, one in self._pumps])
         both = len(self._pumps) == 1 and self._pumps[0][1].head and self._pumps[0][1].crank
-        return Delivery("whole machine", self.machine, pieces, self._count, rate, both, self.machine.pump)
+        return Delivery(
+            "whole machine", self.machine, pieces, self._count, rate, both, self.machine.pump
+        )
 
     @cached_property
     def pistons(self) -> tuple[Delivery, ...]:
@@ -435,21 +526,28 @@ class MachineDelivery:
             alike = id(first), one.number
             if alike not in known:
                 rate = self._rate_of(first.pieces, [(first.samples, one)])
-                made = Delivery("", self.machine, first.pieces, self._count, rate, one.head and one.crank)
+                made = Delivery(
+                    "", self.machine, first.pieces, self._count, rate, one.head and one.crank
+                )
                 _ = made.answers, made.extremes_of("flow")  # once for all copies
                 known[alike] = made
             found.append(copy(known[alike]))
             found[-1].name = name if one.number == 0 else f"{name}, {one.gas.piston.name}"
         return tuple(found)
 
-    def _rate_of(self, pieces: Pieces, pistons: Sequence[tuple[State, Driven]]) -> Callable[..., Array]:
+    def _rate_of(
+        self, pieces: Pieces, pistons: Sequence[tuple[State, DrivenPiston]]
+    ) -> Callable[..., Array]:
         """Return what returns dV/dφ of these pistons together, less the slip; it takes the words of `_displaced`."""
         share = 1 - (self.machine.pump.slip if self.machine.pump else 0.0)
 
         def rate(**how: bool) -> Array:
             each = [pieces.of(share) * _displaced(state, one, **how) for state, one in pistons]
             whole = pieces.filled(sum(each))
-            lasting = unless_cancelled(pieces.largest(whole), sum(map(pieces.largest, each)), _CANCELLED) != 0
+            lasting = (
+                unless_cancelled(pieces.largest(whole), sum(map(pieces.largest, each)), _CANCELLED)
+                != 0
+            )
             return np.where(pieces.of(lasting), whole, 0.0)
 
         return rate
@@ -460,7 +558,9 @@ def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
     groups: dict[object, list[CompressorEnd]] = {}
     for end in ends:
         pressures = () if end.suction is None else (end.suction, end.delivery)
-        groups.setdefault(tuple(f"{np.mean(one):.9g}" for one in pressures) or end.owner, []).append(end)
+        groups.setdefault(
+            tuple(f"{np.mean(pressure):.9g}" for pressure in pressures) or end.owner, []
+        ).append(end)
     stages = [CompressorStage(group) for group in groups.values()]
     stages.sort(key=lambda one: math.inf if one.suction is None else float(np.mean(one.suction)))
     for number, stage in enumerate((one for one in stages if one.suction is not None), 1):

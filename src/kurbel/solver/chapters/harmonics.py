@@ -55,15 +55,27 @@ def amplitudes(pieces: Pieces, values: Array, orders: Array) -> ComplexArray:
     """
     # e^{iwx} on −1 … 1 is a polynomial of degree w + 11.4 w^⅓ + 3 (J_n(w) < 1e-16 beyond), that of the samples counts
     # half, since its last coefficients are small; n Lobatto nodes integrate the degree 2n − 3 exactly
-    count, fastest = len(pieces.rule.nodes), math.radians(pieces.half.max() * orders.max(initial=1.0))
+    count, fastest = (
+        len(pieces.rule.nodes),
+        math.radians(pieces.half.max() * orders.max(initial=1.0)),
+    )
     fine = rule(math.ceil((count / 2 + fastest + 11.4 * fastest ** (1 / 3) + 6) / 2))
     to_fine = fine.weights[:, None] * (chebyshev(fine.nodes, count) @ pieces.rule.series)
-    found, step = np.empty((len(values), len(orders), len(pieces.half)), dtype=complex), 360.0 / pieces.cycle
+    found, step = (
+        np.empty((len(values), len(orders), len(pieces.half)), dtype=complex),
+        360.0 / pieces.cycle,
+    )
     for start in range(0, len(pieces.half), _AT_ONCE):
         part = slice(start, start + _AT_ONCE)
         half = pieces.half[part]
-        degrees = pieces.right_angle[part] + (pieces.offset[part] + half * (1 + fine.nodes[:, None]))
-        shares, turn, before = to_fine @ (values[..., part] * half), unit_vector(-step * degrees), 0.0
+        degrees = pieces.right_angle[part] + (
+            pieces.offset[part] + half * (1 + fine.nodes[:, None])
+        )
+        shares, turn, before = (
+            to_fine @ (values[..., part] * half),
+            unit_vector(-step * degrees),
+            0.0,
+        )
         waves = shares.astype(complex)
         for index, order in enumerate(orders.tolist()):
             if order == before + step and (index + 1) % _RENEWED:
@@ -119,10 +131,14 @@ class MachineOrders(Results):
     def __init__(self, effort: TurningEffort, orders: Array | None = None) -> None:
         self.effort = effort
         if effort.swing is not None:
-            raise UsageError(f"{effort.machine.name}: of the effort its swing of energy alone is known, and no orders")
+            raise UsageError(
+                f"{effort.machine.name}: of the effort its swing of energy alone is known, and no orders"
+            )
         self.orders = every_order(effort.cycle) if orders is None else orders
 
-    def _orders_of(self, pieces: Pieces, torque: Array, inertia: Array | None, size: Number = 0.0) -> Orders:
+    def _orders_of(
+        self, pieces: Pieces, torque: Array, inertia: Array | None, size: Number = 0.0
+    ) -> Orders:
         """Return the orders of a torque (nodes, pieces) with the part of the inertia forces, None without any.
 
         A torque of a shorter cycle has only some of the orders. What is rounding of the largest, or of the torques of
@@ -133,7 +149,9 @@ class MachineOrders(Results):
         present = np.flatnonzero(is_whole(self.orders * round(pieces.cycle / 360.0)))
         found = np.zeros((2, len(self.orders), pieces.count), dtype=complex)
         found[:, present] = amplitudes(pieces, values, self.orders[present])
-        largest = np.maximum(np.abs(found).max(axis=(0, 1)), np.abs(pieces.mean(values)).max(axis=0))
+        largest = np.maximum(
+            np.abs(found).max(axis=(0, 1)), np.abs(pieces.mean(values)).max(axis=0)
+        )
         found = unless_cancelled(found, np.maximum(size, largest), _ROUNDING)
         gas, moved = found[..., 0] if self.effort.count is None else found
         return Orders(self.orders, gas, None if inertia is None else moved, largest)
@@ -144,15 +162,25 @@ class MachineOrders(Results):
         found: dict[str, CylinderOrders] = {}
         for group in self.effort.groups:
             samples = group[0].samples
-            own = self._orders_of(group[0].pieces, samples.M, torque_of_inertia(samples) if moves(group) else None)
+            own = self._orders_of(
+                group[0].pieces, samples.M, torque_of_inertia(samples) if moves(group) else None
+            )
             found |= {forces.drive.name: CylinderOrders(forces, own) for forces in group}
-        return tuple(found[one.drive.name] for one in self.effort.cylinders if one.drive.name in found)
+        return tuple(
+            found[cylinder.drive.name]
+            for cylinder in self.effort.cylinders
+            if cylinder.drive.name in found
+        )
 
     @cached_property
     def machine(self) -> Orders:
         """Those of the turning effort, with the losses of the machine."""
-        effort, sizes = self.effort, [one.own.largest for one in self.cylinders]
-        inertia = effort.sampled(effort.inertia_terms) if effort.given is None and effort.inertia_terms else None
+        effort, sizes = self.effort, [cylinder.own.largest for cylinder in self.cylinders]
+        inertia = (
+            effort.sampled(effort.inertia_terms)
+            if effort.given is None and effort.inertia_terms
+            else None
+        )
         return self._orders_of(effort.pieces, effort.M, inertia, np.sum(sizes, axis=0))
 
     M_mean = value(
@@ -179,10 +207,14 @@ class MachineOrders(Results):
 
         None with fewer than two cylinders.
         """
-        positions = [position(forces) * np.ones(self.effort.pieces.count) for forces, *_ in self.cylinders]
+        positions = [
+            position(forces) * np.ones(self.effort.pieces.count) for forces, *_ in self.cylinders
+        ]
         if len(positions) < 2:
             return None
-        together = np.abs(sum(unit_vector(np.multiply.outer(self.orders, one)) for one in positions))
+        together = np.abs(
+            sum(unit_vector(np.multiply.outer(self.orders, one)) for one in positions)
+        )
         in_phase = together >= (1 - _IN_PHASE) * len(positions)
         each = tuple(tuple(self.orders[one].tolist()) for one in in_phase.T)
         return each[0] if self.effort.count is None else each

@@ -44,7 +44,7 @@ from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import every, magnitude, some, where
 from kurbel.numerics.extreme import Extreme, chosen, largest, smallest
 from kurbel.numerics.pieces import Pieces, common, highest, resolved
-from kurbel.quantity import Answers, Heading, value, values_for
+from kurbel.quantity import Heading, ValuesById, value, values_for
 from kurbel.solver.effort import position
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
@@ -88,7 +88,9 @@ class Place(NamedTuple):
     def combined(self) -> Any:
         """Combined stress 0.35 σ + 0.65 √(σ² + 4 (α₀ τ)²) in Pa after Bach (G, "Resultierende Beanspruchung")."""
         torsion = 0.0 if self.torsion is None else self.torsion
-        return 0.35 * magnitude(self.normal) + 0.65 * np.hypot(self.normal, 2 * self.alpha * torsion)
+        return 0.35 * magnitude(self.normal) + 0.65 * np.hypot(
+            self.normal, 2 * self.alpha * torsion
+        )
 
     @property
     def von_mises(self) -> Any:
@@ -98,7 +100,9 @@ class Place(NamedTuple):
     def of_state(self, number: int, degrees: float) -> Place:
         """Return the place in one of several states, whose forces act at a crank angle."""
         stresses = self._asdict()
-        in_state: dict[str, Any] = {name: float(stresses[name][number]) for name in stresses if np.ndim(stresses[name])}
+        in_state: dict[str, Any] = {
+            name: float(stresses[name][number]) for name in stresses if np.ndim(stresses[name])
+        }
         return self._replace(**in_state, degrees=degrees)
 
 
@@ -109,17 +113,25 @@ class Opposite(NamedTuple):
     turn: Any
 
 
-def places(body: FreeBody, is_last: bool = True, opposite: Opposite | None = None) -> Iterator[Place]:
+def places(
+    body: FreeBody, is_last: bool = True, opposite: Opposite | None = None
+) -> Iterator[Place]:
     """Yield the places of a throw under its forces; those of the journals only where their diameter is given.
 
     is_last: whether the flywheel is beyond its bearing B, or before it. α₀ is 1 for what is round (G, for the pin), and
     that of the allowable stresses for the webs.
     """
     shaft = body.shaft
-    inner, outer = (shaft.web_distance + side * shaft.web_thickness / 2 for side in (-1, 1))  # faces of a web
+    inner, outer = (
+        shaft.web_distance + side * shaft.web_thickness / 2 for side in (-1, 1)
+    )  # faces of a web
     # in the middle of the pin M_b = a √(A_T² + A_D²) and M_d = A_T r (G)
     several = len(body.rods) > 1
-    under_rods = {f"rod {number}": u for number, (_, u) in enumerate(body.rods, 1)} if several else {"middle": 0.0}
+    under_rods = (
+        {f"rod {number}": u for number, (_, u) in enumerate(body.rods, 1)}
+        if several
+        else {"middle": 0.0}
+    )
     if not shaft.overhung:
         sections = {**under_rods, "at web A": -inner, "at web B": inner}
     elif several:
@@ -135,7 +147,9 @@ def places(body: FreeBody, is_last: bool = True, opposite: Opposite | None = Non
         moments = body.moments_at(-shaft.web_distance)
         yield from _web("web_A", shaft, body.before_pin.real, moments, _larger(at_pin, at_A))
     last_web = "web_A" if shaft.overhung else "web_B"
-    yield from _web(last_web, shaft, body.along_web, body.moments_at(shaft.web_distance), _larger(at_pin, at_B))
+    yield from _web(
+        last_web, shaft, body.along_web, body.moments_at(shaft.web_distance), _larger(at_pin, at_B)
+    )
     if shaft.journal_diameter is not None:
         yield from _journals(body, shaft.journal_diameter, outer, is_last, opposite)
 
@@ -156,7 +170,10 @@ def _journals(
     if opposite is not None:
         # at the flywheel between the bearings, or at bearing B, by what acts on either side
         before_B = where(f < 0, f, 0.0)
-        bending = body.moments_at(shaft.b + before_B) + opposite.body.moments_at(shaft.a - before_B) * opposite.turn
+        bending = (
+            body.moments_at(shaft.b + before_B)
+            + opposite.body.moments_at(shaft.a - before_B) * opposite.turn
+        )
         torsion = _larger(magnitude(body.torque_B), magnitude(opposite.body.torque_B))
         yield _round("journal_B", "at flywheel", bending, torsion, diameter)
         return
@@ -175,13 +192,24 @@ def _round(part: str, name: str, moments: Force, torque: Number | None, diameter
 
     Bending σ = 32 M/(π d³), torsion τ = 16 M/(π d³).
     """
-    bendings = (magnitude(32 / math.pi * one / diameter / diameter / diameter) for one in (moments.real, moments.imag))
+    bendings = (
+        magnitude(32 / math.pi * one / diameter / diameter / diameter)
+        for one in (moments.real, moments.imag)
+    )
     in_plane, out_of_plane = bendings
-    torsion = None if torque is None else magnitude(16 / math.pi * torque / diameter / diameter / diameter)
-    return Place(part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane))
+    torsion = (
+        None
+        if torque is None
+        else magnitude(16 / math.pi * torque / diameter / diameter / diameter)
+    )
+    return Place(
+        part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane)
+    )
 
 
-def _web(part: str, shaft: Crankshaft, force: Number, moments: Force, out_of_plane: Number) -> Iterator[Place]:
+def _web(
+    part: str, shaft: Crankshaft, force: Number, moments: Force, out_of_plane: Number
+) -> Iterator[Place]:
     """Stresses of a web, a rectangle t × w: σ = S/(t w) + 6 M/(b h²) across h (G, webs, "auf Druck", "auf Biegung").
 
     force: along it; moments: in-plane bending and twist. α₀ = k_b/(1.3 k_d), or 1 where one of the allowable stresses
@@ -190,13 +218,31 @@ def _web(part: str, shaft: Crankshaft, force: Number, moments: Force, out_of_pla
     Its torsion is τ = (9/2) M_d/(t² w) in the middle of the wide faces and (9/2) M_d/(t w²) in that of the narrow ones
     (G, webs, "auf Drehung"): Bach's rounded factor; de Saint-Venant's own is 4.81 for a square and 3 for a strip.
     """
-    t, w, allowed, twisting = shaft.web_thickness, shaft.web_width, shaft.allowable_bending, shaft.allowable_torsion
+    t, w, allowed, twisting = (
+        shaft.web_thickness,
+        shaft.web_width,
+        shaft.allowable_bending,
+        shaft.allowable_torsion,
+    )
     alpha = 1.0 if allowed is None or twisting is None else allowed / (1.3 * twisting)
     direct, twist = force / t / w, 4.5 * magnitude(moments.imag)
     wide, narrow = magnitude(6 * moments.real / w / t / t), 6 * out_of_plane / t / w / w
-    yield Place(part, "wide face", alpha, direct, wide, None, twist / t / t / w, magnitude(direct) + wide)
-    yield Place(part, "narrow face", alpha, direct, None, narrow, twist / w / w / t, magnitude(direct) + narrow)
-    yield Place(part, "corner", alpha, direct, wide, narrow, None, magnitude(direct) + wide + narrow)
+    yield Place(
+        part, "wide face", alpha, direct, wide, None, twist / t / t / w, magnitude(direct) + wide
+    )
+    yield Place(
+        part,
+        "narrow face",
+        alpha,
+        direct,
+        None,
+        narrow,
+        twist / w / w / t,
+        magnitude(direct) + narrow,
+    )
+    yield Place(
+        part, "corner", alpha, direct, wide, narrow, None, magnitude(direct) + wide + narrow
+    )
 
 
 class StressColumns(AtAngles):
@@ -215,17 +261,32 @@ class StressColumns(AtAngles):
     M_A = value("M_A", "torque", "Torque in journal A, that of the throws before this one")
     M_B = value("M_B", "torque", "Torque in journal B, that of the throws up to this one")
     sigma = values_for(PARTS, "sigma_*", "σ_*", "stress", "Largest combined stress of * (Bach)")
-    mises = values_for(PARTS, "mises_*", "σ_v,*", "stress", "Largest equivalent stress of * (von Mises)")
+    mises = values_for(
+        PARTS, "mises_*", "σ_v,*", "stress", "Largest equivalent stress of * (von Mises)"
+    )
 
-    def __init__(self, phi: Array, states: Sequence[State], body: FreeBody, at: Sequence[Place], torques: bool) -> None:
-        self.phi, self._states, self._body, self._places, self._torques = phi, states, body, at, torques
+    def __init__(
+        self,
+        phi: Array,
+        states: Sequence[State],
+        body: FreeBody,
+        at: Sequence[Place],
+        torques: bool,
+    ) -> None:
+        self.phi, self._states, self._body, self._places, self._torques = (
+            phi,
+            states,
+            body,
+            at,
+            torques,
+        )
 
     @cached_property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The columns by id; of the stresses those of the parts that are examined."""
         body = self._body
         loaded = [state for state in self._states if state.drive.has_force]
-        columns: Answers = {
+        columns: ValuesById = {
             "D": sum(state.D for state in loaded) + np.zeros(len(self.phi)),
             "T": sum(state.T for state in loaded) + np.zeros(len(self.phi)),
             "A_D": body.A.real,
@@ -237,7 +298,10 @@ class StressColumns(AtAngles):
             columns["M_A"] = np.zeros(len(self.phi)) if body.torque_A is None else body.torque_A
             columns["M_B"] = body.torque_B
         for place in self._places:
-            for id, stress in ((f"sigma_{place.part}", place.combined), (f"mises_{place.part}", place.von_mises)):
+            for id, stress in (
+                (f"sigma_{place.part}", place.combined),
+                (f"mises_{place.part}", place.von_mises),
+            ):
                 columns[id] = np.maximum(columns.get(id, 0.0), stress)
         return columns
 
@@ -250,7 +314,11 @@ class Strength(Results):
 
     _loads = Heading("Loads")
     P_dc = value("P_dc", "force", "Full piston force, without inertia, applied at the dead centre")
-    C_rod = value("C_r", "force", "Centrifugal force of the rotating part of the connecting rod, not included in D")
+    C_rod = value(
+        "C_r",
+        "force",
+        "Centrifugal force of the rotating part of the connecting rod, not included in D",
+    )
     _stresses = Heading("Stresses")
     sigma_dc = values_for(
         PARTS,
@@ -261,7 +329,12 @@ class Strength(Results):
         group=str,
     )
     sigma_max = values_for(
-        PARTS, "sigma_*_max", "σ_*,max", "stress", "Largest combined stress of * over the cycle (Bach)", group=str
+        PARTS,
+        "sigma_*_max",
+        "σ_*,max",
+        "stress",
+        "Largest combined stress of * over the cycle (Bach)",
+        group=str,
     )
     mises_max = values_for(
         PARTS,
@@ -322,7 +395,7 @@ class Strength(Results):
     count: int | None
 
     @property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The key values by id."""
         raise NotImplementedError
 
@@ -351,7 +424,11 @@ class ThrowStrength(Strength):
     """
 
     def __init__(
-        self, machine: Machine, line: SupportedShaft, number: int, cylinders: Sequence[CylinderForces]
+        self,
+        machine: Machine,
+        line: SupportedShaft,
+        number: int,
+        cylinders: Sequence[CylinderForces],
     ) -> None:
         self.machine, self.count, self.line = machine, cylinders[0].drive.count, line
         self.shaft: Crankshaft = line.shaft
@@ -364,7 +441,9 @@ class ThrowStrength(Strength):
         self.opposite = None
         if self.shaft.overhung and self.throw.flywheel and len(line.throws) > 1:
             self.opposite = line.throws[1 - number]
-        self._beyond = [cylinders[index] for index in self.opposite.cylinders] if self.opposite else []
+        self._beyond = (
+            [cylinders[index] for index in self.opposite.cylinders] if self.opposite else []
+        )
         self._is_alone = len(cylinders) == 1
 
     def _position(self, forces: CylinderForces) -> Number:
@@ -376,7 +455,9 @@ class ThrowStrength(Strength):
     def _machine_at(self, pieces: Pieces | None) -> Machine:
         """Return the machine, or of many the one of each piece."""
         several = pieces is not None and self.count is not None
-        return taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
+        return (
+            taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
+        )
 
     def _bodies(
         self, load: Load, angle: CrankAngle, pieces: Pieces | None = None, number: int = 0
@@ -422,13 +503,21 @@ class ThrowStrength(Strength):
         torque_A = None
         if self.before:
             before = [self._state(forces, degrees, within) for forces in self.before]
-            torque_A = sum(pin_load(state).imag * state.mechanism.crank for state in before) + np.zeros(len(degrees))
+            torque_A = sum(
+                pin_load(state).imag * state.mechanism.crank for state in before
+            ) + np.zeros(len(degrees))
         beyond = [pin_load(self._state(forces, degrees, within)) for forces in self._beyond]
         zeros = np.zeros(len(degrees), complex)
-        return Load([zeros + pin_load(state) for state in states], torque_A, opposite=beyond), states
+        return Load(
+            [zeros + pin_load(state) for state in states], torque_A, opposite=beyond
+        ), states
 
     def _state(self, forces: CylinderForces, degrees: Array, within: Array) -> State:
-        return State.at(forces.drive, degrees, within) if self._is_alone else state_at(forces, degrees, within)
+        return (
+            State.at(forces.drive, degrees, within)
+            if self._is_alone
+            else state_at(forces, degrees, within)
+        )
 
     # the cycle
 
@@ -454,13 +543,17 @@ class ThrowStrength(Strength):
         pieces = self._common
         rods = [self._pin_samples(forces) for forces in self.rods]
         parts = [part for rod in rods for part in (rod.real, rod.imag)]
-        parts += [pieces.filled(pieces.of(forces.drive.rod_centrifugal_force)) for forces in self.rods]
+        parts += [
+            pieces.filled(pieces.of(forces.drive.rod_centrifugal_force)) for forces in self.rods
+        ]
         beyond = [self._pin_samples(forces) for forces in self._beyond]
         parts += [part for rod in beyond for part in (rod.real, rod.imag)]
         if self.before:
             torque = pieces.filled(0.0)
             for forces in self.before:
-                torque = torque + self._pin_samples(forces).imag * pieces.of(forces.drive.mechanism.crank)
+                torque = torque + self._pin_samples(forces).imag * pieces.of(
+                    forces.drive.mechanism.crank
+                )
             parts.append(torque)
         return np.stack(parts)
 
@@ -470,7 +563,9 @@ class ThrowStrength(Strength):
         forces = parts[: 2 * rods : 2] + 1j * parts[1 : 2 * rods : 2]
         others = parts[3 * rods : 3 * rods + 2 * beyond]
         torque_A = parts[-1] if self.before else None
-        return Load([*forces], torque_A, [*parts[2 * rods : 3 * rods]], [*(others[::2] + 1j * others[1::2])])
+        return Load(
+            [*forces], torque_A, [*parts[2 * rods : 3 * rods]], [*(others[::2] + 1j * others[1::2])]
+        )
 
     def _bodies_on(self, pieces: Pieces, parts: Array) -> tuple[FreeBody, Opposite | None]:
         return self._bodies(self._load(parts), self._angle(pieces.degrees, pieces), pieces)
@@ -486,7 +581,9 @@ class ThrowStrength(Strength):
         pieces, parts = self._common, self._samples
         body, opposite = self._bodies_on(pieces, parts)
         examined = self._places(body, opposite)
-        if self.count is None and not all(np.isfinite(place.combined + place.von_mises).all() for place in examined):
+        if self.count is None and not all(
+            np.isfinite(place.combined + place.von_mises).all() for place in examined
+        ):
             raise UsageError(
                 f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
                 "check the numbers and units of the machine file"
@@ -505,12 +602,21 @@ class ThrowStrength(Strength):
     def _kinks(self, body: FreeBody, load: Load) -> list[Number]:
         """Return the quantities at whose zeros a magnitude or a stress bends."""
         bends = body.moments_at(body.shaft.web_distance)
-        vectors = [*load.rods, body.pin, body.A, bends] if len(load.rods) > 1 else [body.pin, body.A, bends]
+        vectors = (
+            [*load.rods, body.pin, body.A, bends]
+            if len(load.rods) > 1
+            else [body.pin, body.A, bends]
+        )
         kinks = [part for vector in vectors for part in (vector.real, vector.imag)]
         # a web is bent out of plane as much at the pin as at the shaft
         kinks += [body.along_web, body.torque_pin - body.torque_B, body.torque_pin + body.torque_B]
         if body.torque_A is not None:
-            kinks += [body.torque_A, body.torque_A - body.torque_pin, body.torque_A + body.torque_pin, body.torque_B]
+            kinks += [
+                body.torque_A,
+                body.torque_A - body.torque_pin,
+                body.torque_A + body.torque_pin,
+                body.torque_B,
+            ]
         return [*kinks, *(force.real + pull for force, pull in zip(load.rods, load.pulls))]
 
     @property
@@ -524,15 +630,20 @@ class ThrowStrength(Strength):
 
         def stresses(some: Pieces, parts: Array) -> list[Array]:
             examined = self._places(*self._bodies_on(some, parts))
-            return [*(place.combined for place in examined), *(place.von_mises for place in examined)]
+            return [
+                *(place.combined for place in examined),
+                *(place.von_mises for place in examined),
+            ]
 
-        return [Extreme(*map(self._result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))]
+        return [
+            Extreme(*map(self._result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))
+        ]
 
     def _result(self, values: Array) -> Any:
         return result(values, self.count)
 
     @cached_property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The key values by id; stresses of the parts that are examined, the safety where k_b is given."""
         allowable = self.shaft.allowable_bending
         values = self._of_loads()
@@ -540,7 +651,9 @@ class ThrowStrength(Strength):
         values["C_rod"] = pull if some(pull != 0) else None
         values["P_dc"] = self.full_force
         length = self.shaft.pin_length / len(self.rods)
-        values["p_pin_dc"] = abs(self.full_force.value) / self.shaft.pin_diameter / length  # G: P_max/(d_z l_z)
+        values["p_pin_dc"] = (
+            abs(self.full_force.value) / self.shaft.pin_diameter / length
+        )  # G: P_max/(d_z l_z)
         at = self.at_dead_centre
         rows = [*zip(at, self._largest[: len(at)], self._largest[len(at) :])]
         for part in dict.fromkeys(place.part for place in at):
@@ -555,7 +668,7 @@ class ThrowStrength(Strength):
                 values[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
         return values
 
-    def _of_loads(self) -> Answers:
+    def _of_loads(self) -> ValuesById:
         """The key values of the loads by id, pressures of what has a diameter and length, p_m v where a speed is given.
 
         The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n. Each rod has
@@ -564,10 +677,12 @@ class ThrowStrength(Strength):
         (pieces, _, loads), shaft, speed = self._cycle, self.shaft, self.machine.speed
         rods = len(self.rods)
         extremes = pieces.extremes(loads[: 2 + rods])
-        most = [Extreme(*map(self._result, pair)) for pair in zip(extremes.largest, extremes.largest_at)]
+        most = [
+            Extreme(*map(self._result, pair)) for pair in zip(extremes.largest, extremes.largest_at)
+        ]
         means = [self._result(mean) for mean in pieces.mean(loads)]
         mean_on_pin = functools.reduce(np.maximum, means[2 + rods :]) if rods > 1 else means[-1]
-        values: Answers = {"A_max": most[0], "B_max": most[1]}
+        values: ValuesById = {"A_max": most[0], "B_max": most[1]}
 
         pin_length = shaft.pin_length / rods
         parts: dict[str, tuple[Extreme, Any, Number | None, Number | None]] = {
@@ -575,13 +690,18 @@ class ThrowStrength(Strength):
         }
         if len(self.line.throws) == 1:
             journal = shaft.journal_diameter, shaft.journal_length
-            parts |= {"journal_A": (most[0], means[0], *journal), "journal_B": (most[1], means[1], *journal)}
+            parts |= {
+                "journal_A": (most[0], means[0], *journal),
+                "journal_B": (most[1], means[1], *journal),
+            }
         for part, (load, mean, diameter, length) in parts.items():
             if diameter is not None and length is not None:
                 pressure_max: Any = load.value / diameter / length
                 values[f"p_{part}_max"] = Extreme(pressure_max, load.degrees)
                 values[f"p_{part}_mean"] = pressure = mean / diameter / length
-                values[f"k_{part}"] = None if speed is None else pressure * math.pi * diameter * speed
+                values[f"k_{part}"] = (
+                    None if speed is None else pressure * math.pi * diameter * speed
+                )
         return values
 
     def unbalanced(self) -> Number:
@@ -593,7 +713,10 @@ class ThrowStrength(Strength):
             if forces.drive.has_force:
                 state = forces.samples
                 of_work = state.T * state.mechanism.crank + 0j
-                torque = torque + (of_work if self._is_alone else resampled(pieces, forces, of_work)[0]).real
+                torque = (
+                    torque
+                    + (of_work if self._is_alone else resampled(pieces, forces, of_work)[0]).real
+                )
         return self._result(pieces.largest(body.equilibrium_residual(torque)))
 
     @cached_property
@@ -677,7 +800,9 @@ class ThrowStrength(Strength):
         """Every place at the crank angle of the running machine at which its own combined stress is largest."""
         angles = [worst.degrees for worst in self._largest[: len(self.at_dead_centre)]]
         worst = list[Place]()
-        for number, (place, degrees) in enumerate(zip(self._places(*self._next_to(angles)), angles)):
+        for number, (place, degrees) in enumerate(
+            zip(self._places(*self._next_to(angles)), angles)
+        ):
             side = 2 * number + int(place.combined[2 * number : 2 * number + 2].argmax())
             worst.append(place.of_state(side, degrees))
         return tuple(worst)
@@ -715,7 +840,10 @@ class CrankshaftStrength(Strength):
         self.shaft: Crankshaft = machine.crankshaft
         self.count = cylinders[0].drive.count
         self.line = SupportedShaft(machine)
-        self.throws = [ThrowStrength(machine, self.line, number, cylinders) for number in range(len(self.line.throws))]
+        self.throws = [
+            ThrowStrength(machine, self.line, number, cylinders)
+            for number in range(len(self.line.throws))
+        ]
 
     @property
     def only(self) -> ThrowStrength | None:
@@ -745,11 +873,11 @@ class CrankshaftStrength(Strength):
         return self.only.columns(degrees, *names)
 
     @cached_property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The key values by id: of all throws the largest, of safeties the smallest."""
         if self.only:
             return self.only.answers
-        worst: Answers = {}
+        worst: ValuesById = {}
         for throw in self.throws:
             for id, answer in throw.answers.items():
                 if answer is not None:

@@ -29,7 +29,16 @@ from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import NOWHERE, Pieces, refined
 from kurbel.quantity import value
-from kurbel.solver.chapters.chain import Chain, ChainEquation, Holzer, Modes, Tree, loss, passing, response
+from kurbel.solver.chapters.chain import (
+    Chain,
+    ChainEquation,
+    Holzer,
+    Modes,
+    Tree,
+    loss,
+    passing,
+    response,
+)
 from kurbel.solver.chapters.harmonics import HIGHEST, amplitudes, every_order
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import Term, TurningEffort
@@ -64,11 +73,15 @@ def shaft_line_of(machine: Machine) -> ShaftLine:
         what = "write its masses and the segments between them below it, or give a 'coupling' behind a 'flywheel'"
         raise UsageError(f"{machine.name}: no 'shaft' is given; {what}")
     if wheel is None or wheel.inertia is None:
-        raise UsageError(f"{machine.name}: the mass before the coupling is not known; give 'flywheel' an 'inertia'")
+        raise UsageError(
+            f"{machine.name}: the mass before the coupling is not known; give 'flywheel' an 'inertia'"
+        )
     names = tuple(cylinder.name for cylinder in machine.cylinders)
     cranks = ShaftMass("cranks and flywheel", cylinders=names, flywheel=1.0)
     driven = ShaftMass("driven", coupling.inertia)
-    return ShaftLine((cranks, driven), (ShaftSegment(coupling.stiffness, coupling.damping),), load=1)
+    return ShaftLine(
+        (cranks, driven), (ShaftSegment(coupling.stiffness, coupling.damping),), load=1
+    )
 
 
 def stress(line: ShaftLine, segment: int) -> float | None:
@@ -119,7 +132,9 @@ def _terms_of(mass: ShaftMass, terms: Sequence[Term]) -> list[Term]:
     """Return the terms of the torque with the cylinders alone whose cranks are at a mass."""
     of_mass = list[Term]()
     for term in terms:
-        cylinders = [cylinder for cylinder in term.cylinders if cylinder.drive.name in mass.cylinders]
+        cylinders = [
+            cylinder for cylinder in term.cylinders if cylinder.drive.name in mass.cylinders
+        ]
         if cylinders:
             of_mass.append(term._replace(cylinders=cylinders))
     return of_mass
@@ -142,7 +157,9 @@ def excitation(effort: TurningEffort, line: ShaftLine, orders: Array) -> Excitat
     slopes = np.zeros(count)
     if law:
         slopes[line.load] = law.steepness[0] / omega
-    return Excitation(omega, effort.cycle, orders, by_order[:count], by_order[count:], means, slopes)
+    return Excitation(
+        omega, effort.cycle, orders, by_order[:count], by_order[count:], means, slopes
+    )
 
 
 # forced vibration
@@ -159,7 +176,9 @@ class Vibration:
 
     def __init__(self, chain: Chain, line: ShaftLine, acting: Excitation, omegas: Array) -> None:
         self.chain, self.line, self.acting, self.omegas = chain, line, acting, omegas
-        self.driving = acting.gas[:, None] + acting.inertia[:, None] * ((omegas / acting.omega) ** 2)[:, None]
+        self.driving = (
+            acting.gas[:, None] + acting.inertia[:, None] * ((omegas / acting.omega) ** 2)[:, None]
+        )
         self._frequencies = np.multiply.outer(omegas, acting.orders)
         # the load takes the same mean torque at every speed, so that its slope goes with 1/ω; (n, s, 1)
         self._load_damping = np.multiply.outer(acting.load_slope, acting.omega / omegas)[..., None]
@@ -269,7 +288,9 @@ def mean_torques(chain: Chain, means: Array) -> Array:
 
 def _mean_inertia(drive: Drive) -> float:
     """Return the mean over the turn of the reduced moment of inertia of a cylinder in kg m², whatever forces act."""
-    pieces, inertia = refined(drive.pieces, lambda some: reduced_inertia(State.on(drive, some))[None])
+    pieces, inertia = refined(
+        drive.pieces, lambda some: reduced_inertia(State.on(drive, some))[None]
+    )
     return float(pieces.mean(inertia[0])[0])
 
 
@@ -308,7 +329,9 @@ class SegmentTorque(NamedTuple):
 
     def torque_at(self, degrees: Array) -> Array:
         """Return the torque in N m at crank angles (n,) in degrees."""
-        return self.M_shaft_mean + self.pieces.at(self.swing, np.zeros(len(degrees), dtype=np.intp), degrees)
+        return self.M_shaft_mean + self.pieces.at(
+            self.swing, np.zeros(len(degrees), dtype=np.intp), degrees
+        )
 
     def at(self, degrees: Array) -> SegmentState:
         """Return torque and stress at crank angles (n,) in degrees."""
@@ -372,13 +395,17 @@ class ShaftVibration(Results):
         "f_1",
         "frequency",
         "Lowest natural frequency of torsional vibration",
-        lambda vibration: float(vibration.modes.omegas[1 - vibration.first]) / (2 * math.pi),  # no mode of rotation
+        lambda vibration: (
+            float(vibration.modes.omegas[1 - vibration.first]) / (2 * math.pi)
+        ),  # no mode of rotation
     )
     holzer_residual = value(
         "ΣωJΘ",
         "ratio",
         "Residual torque of the Holzer table, relative to the largest torque",
-        lambda vibration: max(table.residual for table in map(vibration.modes.holzer, vibration.mode_numbers)),
+        lambda vibration: max(
+            table.residual for table in map(vibration.modes.holzer, vibration.mode_numbers)
+        ),
         plain="sum w2 J Theta",
         residual=True,
     )
@@ -386,14 +413,18 @@ class ShaftVibration(Results):
         "N_d",
         "power",
         "Mean power dissipated by damping",
-        lambda vibration: None if vibration.vibration is None else float(vibration.vibration.loss[0]),
+        lambda vibration: (
+            None if vibration.vibration is None else float(vibration.vibration.loss[0])
+        ),
         after="tau_vibratory",
     )
     M_vibratory = value(
         "M_w,a",
         "torque",
         "Largest vibratory torque amplitude (half peak-to-peak) of any shaft segment",
-        lambda vibration: max((segment.M_vibratory for segment in vibration.segments), default=None),
+        lambda vibration: max(
+            (segment.M_vibratory for segment in vibration.segments), default=None
+        ),
     )
     tau_vibratory = value(
         "τ_a",
@@ -419,19 +450,33 @@ class ShaftVibration(Results):
             self._unexcited = "no torque acts: no effort and no cylinder with a force is given"
         else:
             self._unexcited = ""
-        is_damped = self.chain.segment_damping.any() or self.chain.mass_damping.any() or self.chain.loss.any()
-        undamped = "" if is_damped else "no damping given; at resonance nothing but damping bounds a vibration"
+        is_damped = (
+            self.chain.segment_damping.any()
+            or self.chain.mass_damping.any()
+            or self.chain.loss.any()
+        )
+        undamped = (
+            ""
+            if is_damped
+            else "no damping given; at resonance nothing but damping bounds a vibration"
+        )
         self.obstacle = self._unexcited or undamped
 
     def _inertia_of(self, mass: ShaftMass) -> float:
         """Return the inertia of a mass in kg m² with the flywheel and the cylinders there; none of a joint."""
         wheel = self.machine.flywheel
         of_wheel = (wheel and wheel.inertia) or 0.0
-        drives = [cylinder.drive for cylinder in self.effort.cylinders if cylinder.drive.name in mass.cylinders]
+        drives = [
+            cylinder.drive
+            for cylinder in self.effort.cylinders
+            if cylinder.drive.name in mass.cylinders
+        ]
         moving = [_mean_inertia(drive) for drive in drives if drive.cylinder.masses]
         inertia = math.fsum((mass.inertia, mass.flywheel * of_wheel, *moving))
         if not (inertia > 0 or mass.is_joint):
-            raise UsageError(f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'")
+            raise UsageError(
+                f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'"
+            )
         return inertia
 
     def _columns(self, phi: Array, within: Array) -> SegmentState:
@@ -467,12 +512,23 @@ class ShaftVibration(Results):
         critical, working = list[Critical](), self.machine.speed
         for mode in range(1, min(modes, self.last) + 1):
             angles, omega = self.holzer(mode).angles, float(self.modes.omegas[mode - self.first])
-            at_cranks = {name: float(angles[i]) for i, mass in enumerate(self.line.masses) for name in mass.cylinders}
-            cranks = [(at_cranks[cylinder.name], cylinder.crank_position) for cylinder in self.machine.cylinders]
+            at_cranks = {
+                name: float(angles[i])
+                for i, mass in enumerate(self.line.masses)
+                for name in mass.cylinders
+            }
+            cranks = [
+                (at_cranks[cylinder.name], cylinder.crank_position)
+                for cylinder in self.machine.cylinders
+            ]
             amplitudes, positions = np.array(cranks or [(float(angles[0]), 0.0)]).T
             sums = np.abs(unit_vector(np.outer(self.orders, positions)) @ amplitudes)
             sums = np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
-            works = sums if self._unexcited else np.abs(angles @ (self.acting.gas + self.acting.inertia))
+            works = (
+                sums
+                if self._unexcited
+                else np.abs(angles @ (self.acting.gas + self.acting.inertia))
+            )
             shares = works / (works.max() or 1.0)
 
             for order, total, share in zip(self.orders.tolist(), sums.tolist(), shares.tolist()):
@@ -500,7 +556,11 @@ class ShaftVibration(Results):
     @cached_property
     def vibration(self) -> Vibration | None:
         """The forced vibration at the working speed; None where none can be computed."""
-        return None if self.obstacle or self.machine.speed is None else self.forced([self.machine.speed])
+        return (
+            None
+            if self.obstacle or self.machine.speed is None
+            else self.forced([self.machine.speed])
+        )
 
     @cached_property
     def steady(self) -> tuple[Pieces, Array] | None:
@@ -510,7 +570,12 @@ class ShaftVibration(Results):
         inertia is given, and where no motion is found, or none that is worth its time.
         """
         chain, effort = self.chain, self.effort
-        if self.vibration is None or not self._every or chain.loss.any() or chain.segment_inertias.any():
+        if (
+            self.vibration is None
+            or not self._every
+            or chain.loss.any()
+            or chain.segment_inertias.any()
+        ):
             return None
         # the springs of a chain between several fixed ends are more unknowns than equations
         if len(chain.fixed_segments) > 1:
@@ -518,7 +583,9 @@ class ShaftVibration(Results):
         order, loaded = self.modes.omegas[-1] / effort.omega, self.line.load % len(self.line.masses)
         driven, _ = torques_on(effort, self.line)
         driven -= effort.pieces.mean(driven)[:, None]
-        equation = ChainEquation(chain, order, effort.omega, effort.pieces, driven, SpeedLaw.of(effort), loaded)
+        equation = ChainEquation(
+            chain, order, effort.omega, effort.pieces, driven, SpeedLaw.of(effort), loaded
+        )
         if max(len(equation.pieces.half), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
             return None
         motion = periodic(equation, equation.pieces)
