@@ -190,7 +190,7 @@ def rejoined_names(words: Iterable[str], quantities: Iterable[Quantity]) -> Iter
 
     Words that are ids, as `p_max` and `m`, are those, whatever symbol they might be together.
 
-    >>> list(joined(["T", "F_z", "max"], [Quantity("F_pin", "F_z,max", "force", "Force on the pin")]))
+    >>> list(rejoined_names(["T", "F_z", "max"], [Quantity("F_pin", "F_z,max", "force", "Force on the pin")]))
     ['T', 'F_z,max']
     """
     rest, known = list(words), tuple(quantities)

@@ -61,9 +61,88 @@ def test_each_row_is_the_machine_with_its_values(
                 ), name
 
 
+@pytest.mark.parametrize("key", ["pegging.angle", "pegging.pressure"])
+def test_keys_within_a_trace_vary_with_another_key(key: str) -> None:
+    """A trace is of one machine: numbers within it are read row by row, however deep they are."""
+    points = ", ".join(
+        f"[{angle}, {60 * np.exp(-((angle - 180) ** 2) / 800):.4f}]" for angle in range(0, 361, 5)
+    )
+    pegging = "{angle: 90 deg, pressure: 0.5 bar}"
+    text = (
+        "{speed: 600 rpm, crank: 70 mm, rod: 200 mm, bore: 100 mm, masses: {piston: 2 kg, "
+        "connecting_rod: {mass: 3 kg, share: 0.4}}, "
+        f"indicator: {{head_end: {{trace: {{unit: bar, points: [{points}], pegging: {pegging}}}}}}}}}"
+    )
+    unit = "deg" if key.endswith("angle") else "bar"
+    inputs = {
+        f"indicator.head_end.trace.{key}": [f"{value} {unit}" for value in (41, 0.5, 73, 90)],
+        "masses.connecting_rod.share": ["0.2", "0.4", "0.6", "0.8"],
+    }
+    together = sweep(text, inputs, ["T_max"])
+    for row in range(4):
+        alone = sweep(text, {name: [values[row]] for name, values in inputs.items()}, ["T_max"])
+        assert together["T_max"][row] == pytest.approx(alone["T_max"][0], rel=1e-12)
+
+
 def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
     found = sweep(LIKE, {"cylinders.0.bore": ["2 m", "3 m"]}, ["A_head"])
     areas = [found[f"{name}.A_head"] for name in "abc"]
     assert areas == [
         pytest.approx(np.pi / 4 * np.array(bores) ** 2) for bores in ([2, 3], [2, 3], [2, 2])
     ]
+
+
+# parts of a row are those that the columns name
+
+
+def two_stages() -> str:
+    """A compressor of two cylinders, both double-acting, that compress from 1 to 2.8 and from 2.8 to 8 bar."""
+    card = "{{compressor: {{suction: {} bar, delivery: {} bar, clearance: 8 %, exponent: 1.35}}}}"
+    texts = ["speed: 600 rpm", "cylinders:"]
+    for name, bore, suction, delivery in (("LP", 320, 1, 2.8), ("HP", 195, 2.8, 8)):
+        ends = ", ".join(
+            f"{end}: {card.format(suction, delivery)}" for end in ("head_end", "crank_end")
+        )
+        indicator = f"indicator: {{pressures: absolute, {ends}}}"
+        texts.append(
+            f"  - {{name: {name}, crank: 90 mm, rod: 450 mm, bore: {bore} mm, {indicator}}}"
+        )
+    return "\n".join(texts)
+
+
+@pytest.mark.parametrize("count", [2, 6])
+def test_columns_of_stages_are_named_by_their_pistons(count: int) -> None:
+    """Other suction at one end makes it a stage of its own: no column may then have the volume of another part."""
+    suctions = [f"{1 + row / 100} bar" for row in range(count)]
+    found = sweep(
+        two_stages(),
+        {"cylinders.0.indicator.head_end.compressor.suction": suctions},
+        ["stroke_volume"],
+    )
+    areas = np.pi / 4 * np.array([0.32, 0.195]) ** 2
+    assert found["LP.stroke_volume"][0] == pytest.approx(2 * areas[0] * 0.18, rel=1e-12)
+    assert np.isnan(found["LP.stroke_volume"][1:]).all()
+    assert found["HP.stroke_volume"] == pytest.approx(
+        np.full(count, 2 * areas[1] * 0.18), rel=1e-12
+    )
+    others = "it has other parts: no 'LP', but 'LP, head end', 'LP, crank end'"
+    assert not found["failure"][0]
+    assert all(set(text.split("'")) == set(others.split("'")) for text in found["failure"][1:])
+
+
+def test_a_bearing_of_other_neighbours_is_another_bearing() -> None:
+    text = """
+speed: 600 rpm
+crankshaft: {a: 100 mm, b: 100 mm, pin_diameter: 50 mm, pin_length: 50 mm, web_distance: 50 mm,
+  web_thickness: 20 mm, web_width: 60 mm, journal_diameter: 50 mm}
+cylinders:
+  - {name: p, crank: 100 mm, rod: 400 mm, axial_position: 0 m, masses: {piston: 1 kg}}
+  - {name: q, crank: 100 mm, rod: 400 mm, axial_position: 0.2 m, masses: {piston: 3 kg}, crank_position: 90 deg}
+"""
+    found = sweep(text, {"cylinders.1.axial_position": ["0.2 m", "-0.2 m"]}, ["load_max"])
+    outer = found["bearing 1.load_max"]
+    # ω² R (1 + λ) m of the piston next to it, half of which each of its bearings carries
+    assert outer[0] == pytest.approx((20 * np.pi) ** 2 * 0.1 * 1.25 / 2, rel=1e-12)
+    assert np.isnan(outer[1])
+    assert "'bearing 1 next to p', 'bearing 2 next to p, q'" in found["failure"][1]
+    assert "but 'bearing 1 next to q'" in found["failure"][1]

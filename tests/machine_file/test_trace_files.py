@@ -378,7 +378,7 @@ def test_what_cannot_be_a_trace_is_named_with_its_line(
             "",
             [],
         ),  # a denser stretch leaves no holes elsewhere
-        ("0,1\n120,2\n120,2\n360,1\n", "", ["1 samples given twice count once"]),
+        ("0,1\n120,2\n120,2\n360,1\n", "", ["1 sample given twice counts once"]),
         (
             "".join(f"{a},{1 + a / 100}\n" for a in [*range(180, 360, 5), *range(0, 180, 5)]),
             "",
@@ -429,6 +429,54 @@ def test_points_and_efforts_are_judged_in_the_same_way(tmp_path: Path) -> None:
         (tmp_path / "m.yaml").write_text(f"effort: {{unit: N m, file: e.csv, {keys}}}\n")
         with pytest.raises(MachineFileError, match=said):
             load(tmp_path / "m.yaml")
+
+
+def test_an_effort_over_three_turns_is_the_same_as_a_file_and_as_points(tmp_path: Path) -> None:
+    angles = np.arange(0.0, 1081.0, 4.0)
+    torques = np.where(angles < 360, 300.0, 0.0) + angles / 100
+    (tmp_path / "e.csv").write_text(rows(angles, torques))
+    points = ", ".join(
+        f"[{angle:g}, {torque!r}]" for angle, torque in zip(angles, torques.tolist())
+    )
+    texts = ("file: e.csv", f"points: [{points}]")
+    efforts = []
+    for keys in texts:
+        (tmp_path / "m.yaml").write_text(f"cycle_turns: 3\neffort: {{unit: N m, {keys}}}\n")
+        efforts.append(Case(load(tmp_path / "m.yaml")).flywheel)
+    assert efforts[0].dE == efforts[1].dE
+    assert efforts[0].M_mean == efforts[1].M_mean
+    (tmp_path / "m.yaml").write_text("effort: {unit: N m, file: e.csv}\n")
+    with pytest.raises(MachineFileError, match=r"runs to 1080 deg.*write 'cycle_turns: 3'"):
+        load(tmp_path / "m.yaml")
+    (tmp_path / "e.csv").write_text(rows(angles[:-20], torques[:-20]))
+    with pytest.raises(
+        MachineFileError, match="no samples from 1000 to 1080 deg; a diagram covers whole turns"
+    ):
+        load(tmp_path / "m.yaml")
+
+
+@pytest.mark.parametrize("counts_on", [False, True])
+def test_laps_of_uneven_rows_keep_their_own_corners(tmp_path: Path, counts_on: bool) -> None:
+    """The area below a lap is that of the trapezoids between its own samples, at whatever angles they are."""
+    generator = np.random.default_rng(3)
+    laps, areas = [], []
+    for lap in range(5):
+        regular = np.linspace(8, 352, 40 + lap)
+        angles = np.concatenate(([0.0], regular + generator.uniform(-3, 3, len(regular)), [359.5]))
+        pressures = (
+            5 + 4 * np.cos(np.radians(angles)) + generator.uniform(0, 1, len(angles)) * (angles > 0)
+        )
+        laps.append((angles, pressures))
+        ends = np.append(angles, 360.0), np.append(pressures, 9.0)
+        areas.append(np.sum(np.diff(ends[0]) * (ends[1][1:] + ends[1][:-1]) / 2))
+    angles = np.concatenate(
+        [angles + 360 * lap * counts_on for lap, (angles, _) in enumerate(laps)]
+    )
+    content = rows(angles, np.concatenate([pressures for _, pressures in laps]))
+    trace = trace_of(machine(tmp_path, content, "", cycle="two-stroke"))
+    widths, samples = np.diff(trace.angles), trace.samples / 1e5
+    measured = (widths * (samples[:, 1:] + samples[:, :-1]) / 2).sum(axis=1)
+    np.testing.assert_allclose(measured, areas, rtol=2e-7)
 
 
 def test_a_pipe_is_no_file_of_samples(tmp_path: Path) -> None:

@@ -298,6 +298,23 @@ def test_a_gear_is_the_chain_referred_to_one_shaft() -> None:
     assert one.tau_vibratory == pytest.approx(16 * one.M_vibratory / (math.pi * 0.03**3), rel=1e-14)
 
 
+def test_the_stress_of_a_stepped_piece_is_that_of_its_thinnest_section() -> None:
+    """A hollow section may be wider and yet weaker: π (d⁴ − d_i⁴)/(16 d) is least, wherever it stands."""
+    effort = Harmonics(10.0, ((1.0, 3.0, 2.0), (3.0, 1.0, -2.0)))
+    sections = [
+        ShaftPart(diameter=0.05, length=0.3, density=0.0, loss_factor=0.01),
+        ShaftPart(diameter=0.045, length=0.2, density=0.0),
+        ShaftPart(diameter=0.06, bore=0.055, length=0.1, density=0.0),
+    ]
+    least = math.pi * (0.06**4 - 0.055**4) / (16 * 0.06)
+    assert least < math.pi * 0.045**3 / 16
+    for turned in (sections, sections[::-1], [sections[0], sections[2], sections[1]]):
+        piece = shaft(
+            effort, 10.0, ShaftPart(inertia=2.0), *turned, ShaftPart(inertia=0.4)
+        ).segments[0]
+        assert piece.tau_vibratory == pytest.approx(piece.M_vibratory / least, rel=1e-14)
+
+
 def test_the_mean_torque_goes_to_the_load() -> None:
     effort, piece = Harmonics(10.0, ((1.0, 3.0, 2.0),)), ShaftPart(stiffness=1e4, damping=1.0)
     masses = [ShaftPart(inertia=1.0), ShaftPart(inertia=2.0, load=True), ShaftPart(inertia=3.0)]

@@ -8,15 +8,14 @@ any angle of a piece between corners: it selects the side of a corner.
 import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache, partial
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.accuracy.cards import KNOWN_CARDS, Drawing, Line, drawn, without_process
 from kurbel.accuracy.methods import Found, Number, by_gauss, merged, mp, mpf, roots
 from kurbel.arrays import Array
 from kurbel.machine import CYCLES, Cylinder, Machine
-from kurbel.machine.indicator import Card
 from kurbel.machine.parts import GasOnRings
 from kurbel.mechanisms import Mechanism
 
@@ -40,10 +39,10 @@ def unknown(machine: Machine, quantity: str) -> Iterator[str]:
             yield f"the {one.mechanism.name}"
         if quantity in "xcb":
             return
-        if not all(
-            isinstance(card, Card) for piston in one.pistons for card in piston.chambers.values()
-        ):
-            yield "traces and ideal cards"
+        for piston in one.pistons:
+            for chamber in piston.chambers.values():
+                if what := without_process(chamber):
+                    yield what
         if one.masses and one.masses.connecting_rod and one.masses.connecting_rod.exact:
             yield "a rod given by its centre of gravity"
         if one.ram_force:
@@ -106,43 +105,31 @@ class TextbookMotion:
         return self.at_pin(sin=mp.sinpi(phi / 180), cos=mp.cospi(phi / 180))
 
 
-Point = tuple[Number, Number]
-"""A share of the crosshead's stroke from the inner dead centre, and an absolute pressure."""
-
-
 class Chamber(NamedTuple):
-    """One end of a piston: its card, whether it grows on the outstroke (sign 1) or the return (−1), its area in m².
+    """One end of a piston: its card, whether it grows on the outstroke (sign 1) or the return (−1), its area in m²."""
 
-    lift: in Pa, makes the pressures of the card absolute.
-    """
-
-    card: Card
+    card: Drawing
     sign: int
     area: Number
-    lift: Number
+    strokes: int
 
-    def points(self, stroke: int) -> list[Point]:
-        """Return the card's line on a stroke of the cycle."""
-        line = self.card.lines[(stroke - (self.sign < 0)) % len(self.card.lines)]
-        return [
-            (self._turned(mpf(z)), mpf(p) + self.lift)
-            for z, p in zip(line.fractions, line.pressures)
-        ]
+    def lines(self, stroke: int) -> list[Line]:
+        """Return the card's lines on a stroke of the cycle."""
+        number = (stroke - (self.sign < 0)) % self.strokes
+        return [line for line in self.card.lines if line.stroke == number]
 
-    def _turned(self, share: Number) -> Number:
+    def fraction(self, share: Number) -> Number:
+        """Return z of the card at a share of the crosshead's stroke, or that share at z."""
         return share if self.sign > 0 else 1 - share
 
-    def pressure(self, segment: tuple[Point, Point], share: Number) -> Number:
-        """Return the absolute pressure at a share of the stroke, between two points of the card."""
-        (begin, p), (end, next_p) = segment
-        if self.card.interpolate == "linear":
-            return p + (next_p - p) * (share - begin) / (end - begin)
-        volume, first, last = (
-            self._turned(one) + mpf(self.card.clearance) for one in (share, begin, end)
-        )
-        return p * (next_p / p) ** (
-            mp.log(volume / first) / mp.log(last / first)
-        )  # p V^n is constant
+    def line_at(self, stroke: int, share: Number) -> Line:
+        """Return the line on which the gas is at a share of the crosshead's stroke."""
+        z = self.fraction(share)
+        return next(line for line in self.lines(stroke) if (line.begin - z) * (line.end - z) < 0)
+
+    def pressure(self, line: Line, share: Number) -> Number:
+        """Return the absolute pressure at a share of the crosshead's stroke, on one of the lines."""
+        return self.card.at(line, self.fraction(share))
 
 
 class Forces(NamedTuple):
@@ -195,11 +182,14 @@ class TextbookCylinder:
         for piston in cylinder.pistons:
             lift = mpf(0) if piston.indicator and piston.indicator.absolute else self._ambient
             for end, card in piston.chambers.items():
-                assert isinstance(card, Card)
+                assert isinstance(card, KNOWN_CARDS)
                 head, ratio = end == "head_end", piston.lever_ratio
                 thickness = mpf(piston.head_end_rod if head else piston.crank_end_rod)
                 area = mp.pi / 4 * (mpf(piston.bore) ** 2 - thickness**2) * abs(mpf(ratio))
-                self._chambers.append(Chamber(card, 1 if head == (ratio > 0) else -1, area, lift))
+                drawing = drawn(card, lift, self.turns == 2)
+                sign = 1 if head == (ratio > 0) else -1
+                strokes = 1 + max(line.stroke for line in drawing.lines)
+                self._chambers.append(Chamber(drawing, sign, area, strokes))
 
         self._piece = cache(self._piece_of)
         self.edges = merged(np.array(list(self._corners())))
@@ -214,13 +204,10 @@ class TextbookCylinder:
         for stroke in range(2 * self.turns):
             turn, back = divmod(stroke, 2)
             yield self.motion.ends[back] + 360 * turn
-            shares = {
-                share
-                for chamber in self._chambers
-                for share, _ in chamber.points(stroke)
-                if 0 < share < 1
-            }
-            for share in shares:
+            shares: set[Number] = set()
+            for chamber in self._chambers:
+                shares |= {chamber.fraction(line.begin) for line in chamber.lines(stroke)}
+            for share in shares - {0, 1}:
                 beyond = np.frompyfunc(
                     lambda phi, _, x=share * self.motion.stroke: self.motion.at(phi).x - x, 2, 1
                 )
@@ -232,8 +219,8 @@ class TextbookCylinder:
                 )
                 yield angle + 360 * turn
 
-    def _piece_of(self, within: Number) -> tuple[int, list[tuple[Point, Point]]]:
-        """Return the direction of the crosshead on a piece, and between which points of its card each chamber is."""
+    def _piece_of(self, within: Number) -> tuple[int, list[Line]]:
+        """Return the direction of the crosshead on a piece, and on which line of its card each chamber is."""
         inner, outer, _ = self.motion.ends
         since = (within - inner) % (360 * self.turns)
         turn = int(since / 360)
@@ -241,19 +228,15 @@ class TextbookCylinder:
             since - 360 * turn > outer - inner,
             self.motion.at(within).x / self.motion.stroke,
         )
-        lines = (chamber.points(2 * turn + back) for chamber in self._chambers)
-        held = [
-            next(two for two in pairwise(line) if (two[0][0] - share) * (two[1][0] - share) < 0)
-            for line in lines
-        ]
-        return -1 if back else 1, held
+        lines = [chamber.line_at(2 * turn + back, share) for chamber in self._chambers]
+        return -1 if back else 1, lines
 
     def at(self, phi: Number, within: Number) -> Forces:
         """Return the forces at a crank angle."""
-        motion, (direction, segments) = self.motion.at(phi), self._piece(within)
+        motion, (direction, lines) = self.motion.at(phi), self._piece(within)
         gas, share = mpf(0), motion.x / self.motion.stroke
-        for chamber, segment in zip(self._chambers, segments):
-            gas += chamber.sign * chamber.area * (chamber.pressure(segment, share) - self._ambient)
+        for chamber, line in zip(self._chambers, lines):
+            gas += chamber.sign * chamber.area * (chamber.pressure(line, share) - self._ambient)
         push = gas - self.mass * self.omega**2 * motion.curvature + self._weight
         lift = (
             push - direction * self._rings

@@ -101,12 +101,14 @@ def _machine_entries(machine: Machine) -> Iterator[CheckEntry]:
         between = intervals(angles, 360.0 * machine.revolutions)
         least, most = min(between), max(between)
         uneven = most - least > _EVEN
-        at, listed = (
-            ", ".join(f"{angle:g}" for angle in some)
-            for some in (angles, between if uneven else [most])
-        )
+        listed = ", ".join(f"{angle:g}" for angle in (between if uneven else [most]))
+        at = ", ".join(f"{angle:g}" for angle in angles) + " deg"
+        if len(found) == 1 and angles[0]:
+            # with an offset, the inner dead centre is a little before or after φ = 0
+            at = f"{math.remainder(angles[0], most):g} deg, the inner dead centre"
         order = f"order {'-'.join(str(number) for _, number in found)}, " if path else ""
-        yield CheckEntry("firing", f"{order}at {at} deg, intervals {listed} deg", "info", path)
+        text = f"{order}at {at}, intervals {listed} deg"
+        yield CheckEntry("firing", text, "info", path)
         if uneven:
             yield CheckEntry(
                 "note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "info", path

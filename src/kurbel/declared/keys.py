@@ -36,9 +36,9 @@ class Key(NamedTuple):
     """One key: its form, its meaning in one sentence, the textbook symbol, and whether it is required.
 
     absent: what holds without it. instead: another key that gives the same quantity; both together are a contradiction,
-    and if that one is required, one of the two is. needs: a key that must be given with it. also: other words that
-    people try for it. attribute: of the record, which has the value; '' for a key that only determines others: `gives`
-    takes the values by key and returns these attributes.
+    and if that one is required, one of the two is. needs: a key that must be given with it; or_else: what to write
+    where that one is not known. also: other words that people try for it. attribute: of the record, which has the
+    value; '' for a key that only determines others: `gives` takes the values by key and returns these attributes.
     """
 
     form: Form
@@ -48,6 +48,7 @@ class Key(NamedTuple):
     absent: str = ""
     instead: str = ""
     needs: str = ""
+    or_else: str = ""
     example: str = ""
     also: tuple[str, ...] = ()
     attribute: str = ""
@@ -139,7 +140,8 @@ def contradictions(keys: Keys, given: Collection[str]) -> Iterator[Rule]:
         if name in given and other in given:
             yield Rule(name, True, f"'{other}' and '{name}' mean the same; give only one of them")
         if name in given and key.needs and key.needs not in given:
-            yield Rule(name, True, f"'{name}' needs '{key.needs}' beside it")
+            otherwise = f"; {key.or_else}" if key.or_else else ""
+            yield Rule(name, True, f"'{name}' needs '{key.needs}' beside it{otherwise}")
         if other in keys and keys[other].required and name not in given and other not in given:
             shown = other if keys[other].example else name
             yield Rule((), True, f"'{other}' or '{name}' is missing; {keys[shown].write(shown)}")

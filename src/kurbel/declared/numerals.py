@@ -36,7 +36,7 @@ def familiar(text: str) -> str:
 def keyboard_text(text: str) -> str:
     """Return a number or unit as a keyboard writes it, one space wherever there is white space, none at the ends.
 
-    >>> plain("\\u22125\\u202fmm ")
+    >>> keyboard_text("\\u22125\\u202fmm ")
     '-5 mm'
     """
     return " ".join(familiar(text).split())

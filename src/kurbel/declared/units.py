@@ -83,8 +83,8 @@ KINDS = {
     "speed": Kind(
         1e-9,
         1e6,
-        "1/s, rpm, 1/min, U/min, rev/min, r/min, min-1, rps, s-1, Hz, rad/s",
-        "1/s",
+        "rps, rpm, 1/s, 1/min, U/min, rev/min, r/min, min-1, s-1, Hz, rad/s",
+        "rps",
         "rpm",
         "rpm",
         "rpm",
@@ -459,7 +459,7 @@ _FITTING = {
     "pressure": (("Pa", 1e4), ("kPa", 500), ("bar", 0)),
     "stress": (("Pa", 1e5), ("N/mm2", 0)),
     "power": (("W", 1e3), ("kW", 0)),
-    "speed": (("rpm", 10), ("1/s", 0)),
+    "speed": (("rpm", 10), ("rps", 0)),
 }
 """Kind -> units with the bare numbers from which on they are likely, the largest first."""
 

@@ -4,7 +4,7 @@ A `Study` is a machine file of which keys vary: the key values that are requeste
 break.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple, Union
 
@@ -44,14 +44,24 @@ _LARGE, _MOST_LARGE = {"stress", "bearings"}, 100
 
 DesignValue = Union[float, tuple[float, ...], None]
 """A key value in SI: a number, or a list; None where there is none."""
-DesignValues = Union[Sequence[DesignValue], str]
+
+
+class Row(NamedTuple):
+    """The key values of a machine in SI; other_parts: how its parts differ from those that are requested, or ''."""
+
+    values: Sequence[DesignValue]
+    other_parts: str = ""
+
+
+DesignValues = Union[Row, str]
 """The key values of a machine, or the reason why it has none."""
 
 
 class Answer(NamedTuple):
     """A key value of a command; subject: the cylinder, bearing or machine it belongs to, as the report names it.
 
-    alone: requested for this subject only, as `LP.c_max`; angle: the crank angle of an extreme instead of its value.
+    alone: requested for this subject only, as `LP.c_max`; angle: the crank angle of an extreme instead of its value;
+    part: what the subject is, whatever its number, see `Subject.identity`; '' for a subject that is its name.
     """
 
     quantity: Quantity
@@ -59,6 +69,12 @@ class Answer(NamedTuple):
     subject: str
     alone: bool = False
     angle: bool = False
+    part: str = ""
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Which part of which command it is of."""
+        return self.command, self.part or self.subject
 
     @property
     def kind(self) -> str:
@@ -67,8 +83,13 @@ class Answer(NamedTuple):
 
     @property
     def owner(self) -> str:
-        """The word that requests it for this subject only: `machine` of `machine.T_max`, or the name of the subject."""
-        return MACHINE if self.subject == _WHOLE else self.subject
+        """The word that requests it for this subject only: `machine` of `machine.T_max`, or the name of the subject.
+
+        A part that is numbered by what it may be in one row only, such as a stage, has its own name.
+        """
+        if self.subject == _WHOLE:
+            return MACHINE
+        return self.part if self.part and not self.part.startswith(self.subject) else self.subject
 
 
 # which key values are requested
@@ -131,7 +152,9 @@ def _holding(
     """
     for subject in subjects_of(case, command, pistons=bool(owner)):
         for quantity in subject.lists.key_values(command).values():
-            if owner not in ("", subject.name) or (quantity.id != id if id else quantity.residual):
+            if owner not in ("", subject.name, subject.identity) or (
+                quantity.id != id if id else quantity.residual
+            ):
                 continue
             value: object
             try:
@@ -139,7 +162,10 @@ def _holding(
             except KurbelError as error:
                 value = error
             if value is not None:
-                yield Answer(quantity, command, subject.name, alone=bool(owner)), value
+                yield (
+                    Answer(quantity, command, subject.name, bool(owner), part=subject.identity),
+                    value,
+                )
 
 
 # their values
@@ -201,7 +227,7 @@ def _together(
         return {}
     machine = changed(batch.machine, lambda numbers: numbers[places])
     try:
-        columns = _values(Case(machine, len(places)), requested)
+        columns, other_parts = _values(Case(machine, len(places)), requested)
     except (KurbelError, ArithmeticError, RuntimeWarning):
         half = len(places) // 2
         return _together(batch, places[:half], requested) | _together(
@@ -221,18 +247,15 @@ def _together(
         else:
             fit &= np.isfinite(value)
             each.append(np.broadcast_to(value, fit.shape).tolist())
-    return {
-        batch.rows[place]: values
-        for place, values, good in zip(places.tolist(), zip(*each), fit.tolist())
-        if good
-    }
+    rows = zip(places.tolist(), zip(*each), fit.tolist())
+    return {batch.rows[place]: Row(values, other_parts) for place, values, good in rows if good}
 
 
 @np.errstate(all="ignore")
 def answered_alone(machine: Machine, requested: Sequence[Answer]) -> DesignValues:
     """Return the key values of a machine by itself."""
     try:
-        found = _values(Case(machine), requested)
+        found, other_parts = _values(Case(machine), requested)
         for one, value in zip(requested, found):
             if value is not None and not np.isfinite(value).all():
                 raise too_large(one.quantity)
@@ -240,25 +263,57 @@ def answered_alone(machine: Machine, requested: Sequence[Answer]) -> DesignValue
         return error.reason
     except ArithmeticError as error:
         return f"numeric overflow ({error})"
-    return found
+    return Row(found, other_parts)
 
 
-def _values(case: Case, requested: Sequence[Answer]) -> list[Any]:
-    """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
+def _values(case: Case, requested: Sequence[Answer]) -> tuple[list[Any], str]:
+    """Return the values of a case of one machine or of many, in SI, and how its parts differ; raises KurbelError."""
     known: dict[tuple[str, str], Subject] = {}
     for command in dict.fromkeys(one.command for one in requested):
         known |= {
-            (command, subject.name): subject for subject in subjects_of(case, command, pistons=True)
+            (command, subject.identity): subject
+            for subject in subjects_of(case, command, pistons=True)
         }
     values = []
     for one in requested:
-        subject = known.get((one.command, one.subject))
+        subject = known.get(one.key)
         value = subject.answer(one.quantity) if subject else None
         if one.angle:
             values.append(value.degrees if isinstance(value, Extreme) else None)
         else:
             values.append(number_of(value))
-    return values
+    return values, _other_parts(known, requested)
+
+
+def _other_parts(known: Mapping[tuple[str, str], Subject], requested: Sequence[Answer]) -> str:
+    """Return which of the requested parts a machine does not have, and which others have their key values; or ''.
+
+    known: the subjects of a machine by command and identity.
+    """
+    missing = [answer.key[1] for answer in requested if answer.key not in known]
+    keys = {answer.key for answer in requested}
+    pistons = {id(piston) for subject in known.values() for piston in subject.pistons}
+    others: list[str] = []
+    for (command, identity), subject in known.items():
+        if (command, identity) in keys or subject.whole or id(subject) in pistons:
+            continue
+        quantities = {
+            answer.quantity.id: answer.quantity
+            for answer in requested
+            if answer.command == command and not answer.alone and answer.subject != _WHOLE
+        }
+        if any(subject.answer(quantity) is not None for quantity in quantities.values()):
+            others.append(subject.identity)
+    if not missing and not others:
+        return ""
+    lacking = f"no {_quoted(missing)}" if missing else ""
+    more = f"but {_quoted(others)}" if others else ""
+    return f"it has other parts: {', '.join(filter(None, (lacking, more)))}"
+
+
+def _quoted(names: Iterable[str]) -> str:
+    """Return names for a sentence, each once."""
+    return ", ".join(f"'{name}'" for name in dict.fromkeys(names))
 
 
 # the machine file of which keys vary
@@ -299,13 +354,15 @@ class Limit(NamedTuple):
 class DesignResult(NamedTuple):
     """The key values of a design in SI, or why it fails.
 
-    broken: names of the limits that it breaks; unjudged: the limits that cannot be judged, each with the reason.
+    broken: names of the limits that it breaks; unjudged: the limits that cannot be judged, each with the reason;
+    other_parts: how its parts differ from those of the columns, or ''.
     """
 
     values: Sequence[DesignValue] = ()
     failure: str = ""
     broken: tuple[str, ...] = ()
     unjudged: tuple[str, ...] = ()
+    other_parts: str = ""
 
 
 class Study:
@@ -345,7 +402,7 @@ class Study:
     def first(self) -> Sequence[DesignValue]:
         """The key values of the first valid machine."""
         found = answered_alone(self.binder.machine, self.answers)
-        return [None] * len(self.answers) if isinstance(found, str) else found
+        return [None] * len(self.answers) if isinstance(found, str) else found.values
 
     def heads(self, system: str) -> list[Head]:
         """Return the heads of the key values in a system of units, which the values of the first machine decide.
@@ -372,12 +429,14 @@ class Study:
     def of(self, columns: Sequence[KeyColumn]) -> list[DesignResult]:
         """Return what the designs with these values of the keys give; for the same digits give the same rows."""
         count = len(self.answers)
-        return [
-            DesignResult(failure=values)
-            if isinstance(values, str)
-            else DesignResult(values[:count], "", *self._judged(values[count:]))
-            for values in answered(self.binder, columns, self.every)
-        ]
+        designs = []
+        for row in answered(self.binder, columns, self.every):
+            if isinstance(row, str):
+                designs.append(DesignResult(failure=row))
+                continue
+            broken, unjudged = self._judged(row.values[count:])
+            designs.append(DesignResult(row.values[:count], "", broken, unjudged, row.other_parts))
+        return designs
 
     def _judged(self, values: Sequence[DesignValue]) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Return the limits that are broken, and those that cannot be judged; values: one for each limit."""
@@ -406,6 +465,8 @@ def _limits_of(machine: Machine) -> Iterator[Limit]:
             raise UsageError(f"limits.{name}: {error}") from None
         if not found:
             raise UsageError(f"limits.{name}: {no_such_value(name, scoped(name)[1])}")
-        yield from (
-            Limit(name, Answer(one.quantity, one.command, one.subject.name), bound) for one in found
-        )
+        for one in found:
+            answer = Answer(
+                one.quantity, one.command, one.subject.name, alone=True, part=one.subject.identity
+            )
+            yield Limit(name, answer, bound)

@@ -89,7 +89,7 @@ class Binder:
                 form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else "")
             )
             self._numeric.append(
-                not inner and form.number is not None and not isinstance(owner.made, Indivisible)
+                not inner and form.number is not None and not _is_indivisible(owner, mappings)
             )
         self._words, self._root = self._structure(start), root
 
@@ -284,6 +284,14 @@ def _mappings(value: object) -> Iterator[ReadMapping]:
 def _reads(given: ReadMapping, name: object) -> bool:
     """Return whether a key is one of the record itself, and given."""
     return name in given.values and name in given.form.keys
+
+
+def _is_indivisible(given: ReadMapping, mappings: Sequence[ReadMapping]) -> bool:
+    """Return whether a mapping, or one that it is in, becomes a record whose arrays are those of one machine."""
+    return any(
+        isinstance(mapping.made, Indivisible) and given.path[: len(mapping.path)] == mapping.path
+        for mapping in mappings
+    )
 
 
 def _owner(path: Path, mappings: Sequence[ReadMapping]) -> tuple[ReadMapping, str, Path]:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Flags
 from kurbel.declared.numerals import keyboard_text
 from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import convert
@@ -133,20 +133,79 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
 
 def pareto_front(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:
     """Yield the Pareto front: the rows than which no other is better in one aim and as good in all."""
-    given = [row for row in rows if not any(aim.of(row)[0] for aim in aims)]
-    costs = np.array([[aim.of(row)[1] for aim in aims] for row in given]).reshape(
-        len(given), len(aims)
-    )
-    order = np.lexsort(costs.T[::-1])  # of these the first is never bettered by a later one
-    front = []
-    while len(order):
-        first, order = order[0], order[1:]
-        front.append(first)
-        worse = (costs[first] <= costs[order]).all(axis=1) & (costs[first] < costs[order]).any(
-            axis=1
-        )
-        order = order[~worse]
-    return (given[place] for place in sorted(front))
+    judged, costs = list[Design](), list[list[float]]()
+    for row in rows:
+        verdicts = [aim.of(row) for aim in aims]
+        if not any(lacks for lacks, _ in verdicts):
+            judged.append(row)
+            costs.append([cost for _, cost in verdicts])
+    is_best = unbettered(np.array(costs).reshape(len(judged), len(aims)))
+    return (row for row, is_there in zip(judged, is_best.tolist()) if is_there)
+
+
+_BLOCK = 512
+"""Points that are compared with all of the front together."""
+
+
+def unbettered(costs: Array) -> Flags:
+    """Return which points (n, aims) no other is less in one cost and not more in any; equal ones stand together.
+
+    In the order of the first cost, of equal ones in that of the next, a point is bettered by earlier ones alone, and by
+    any of these that is not more in the other costs. Of two costs the least one so far decides.
+    """
+    count, aims = costs.shape
+    if not count:
+        return np.zeros(0, dtype=bool)
+
+    # points in order, equal ones once
+    order = np.lexsort(costs.T[::-1])
+    ordered = costs[order]
+    is_new = np.ones(count, dtype=bool)
+    is_new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    points = ordered[is_new]
+
+    if aims <= 2:
+        others = points[:, -1]
+        least_before = np.minimum.accumulate(others)[:-1]
+        stays: Flags = np.ones(len(points), dtype=bool)
+        stays[1:] = others[1:] < least_before if aims == 2 else False
+    else:
+        stays = _unbettered_by_blocks(points[:, 1:])
+
+    found = np.empty(count, dtype=bool)
+    found[order] = stays[np.cumsum(is_new) - 1]
+    return found
+
+
+def _unbettered_by_blocks(points: Array) -> Flags:
+    """Return which of different points (n, costs) have no earlier one that is not more in any cost."""
+    stays = np.ones(len(points), dtype=bool)
+    front = np.empty((0, points.shape[1]))
+    for begin in range(0, len(points), _BLOCK):
+        rest = np.arange(begin, min(begin + _BLOCK, len(points)))
+
+        # by the front of all blocks before
+        rest = rest[~_is_reached(front, points[rest]).any(axis=0)]
+
+        # by earlier ones of this block
+        among = _is_reached(points[rest], points[rest])
+        is_earlier = np.tri(len(rest), k=-1, dtype=bool).T
+        rest = rest[~(among & is_earlier).any(axis=0)]
+
+        stays[begin : begin + _BLOCK] = False
+        stays[rest] = True
+        front = np.concatenate((front, points[rest]))
+    return stays
+
+
+def _is_reached(first: Array, second: Array) -> Flags:
+    """Return which of the first points (n, costs) are in no cost more than which of the second ones, (n, second)."""
+    reached = np.ones((len(first), len(second)), dtype=bool)
+    is_less = np.empty_like(reached)
+    for cost, other in zip(first.T, second.T):
+        np.less_equal(cost[:, None], other, out=is_less)
+        reached &= is_less
+    return reached
 
 
 class Unit(str):

@@ -208,19 +208,32 @@ class Solutions:
             return np.array([one.values for one in self.at(places)])[:, columns] - wanted
 
         if len(wanted) == 1:
-            found, jumps = roots(lambda places: left(places)[:, 0])
+            found, jumps, until = roots(lambda places: left(places)[:, 0], abs(float(wanted[0])))
+            if not self.depends(0):
+                return
             places = found[:, None]
         else:
             places = common_roots(left)
             jumps = np.zeros(len(places), dtype=bool)
-        for one, jump in zip(self.at(places) if len(places) else (), jumps):
-            self.excluded += bool(one.unmet)
-            if not one.unmet:
-                notes = (f"breaks {one.broken}",) if one.broken else ()
-                (self.jumps if jump else self.found).append(
-                    Solution(one.numbers, one.values, notes)
-                )
+            until = np.full(len(places), np.nan)
+        designs = self.at(places) if len(places) else []
+        for design, jump, end in zip(designs, jumps, until):
+            if design.unmet:
+                self.excluded += 1
+                continue
+            notes = [f"breaks {design.broken}"] if design.broken else []
+            if np.isfinite(end):
+                (key,) = self.varied
+                last = key.low * (1 - end) + key.high * end
+                notes.append(f"the same up to {key.written(last)}")
+            solution = Solution(design.numbers, design.values, tuple(notes))
+            (self.jumps if jump else self.found).append(solution)
         self.found.sort()
+
+    def depends(self, number: int) -> bool:
+        """Return whether a wanted key value differs, by more than rounding, between the designs that were computed."""
+        low, high = self.met[number]
+        return not high - low <= _EQUAL * max(abs(low), abs(high))
 
     def find_extreme(self, aim: str) -> None:
         """Find the design whose key value is the `least` or the `greatest` within all limits, if there is one."""
@@ -263,6 +276,11 @@ class Solutions:
                     )
         return tuple(notes)
 
+    def has_wanted(self, number: int) -> bool:
+        """Return whether a key value that does not depend on the keys is the wanted one."""
+        value, (_, met) = self.wanted[number].value, self.met[number]
+        return value is not None and abs(met - value) <= _EQUAL * abs(value)
+
     @property
     def places(self) -> Array:
         """All designs that were computed (n, keys), in SI."""
@@ -304,13 +322,18 @@ def _nothing(found: Solutions) -> str:
         return f"{ranges}: no design has {wanted}: {why}"
     if found.wanted[0].aim != "=":
         return f"{ranges}: no design keeps all limits and conditions"
+    keys = " or ".join(key.key for key in found.varied)
     met = []
-    for one, (low, high) in zip(found.wanted, found.met):
-        met.append(f"{one.head.id} is {show(low, one.head.kind)} to {show(high, one.head.kind)}")
+    for number, (target, (low, high)) in enumerate(zip(found.wanted, found.met)):
+        least, most = show(low, target.head.kind), show(high, target.head.kind)
+        constant = f"{target.head.id} is {most} throughout, and does not depend on {keys}"
+        met.append(f"{target.head.id} is {least} to {most}" if found.depends(number) else constant)
     more = "; it is passed by a jump" if found.jumps else ""
     if found.excluded:
         more += f"; --where leaves out {found.excluded} that {'has' if found.excluded == 1 else 'have'} it"
-    return f"{ranges}: no design has {wanted}: {' and '.join(met)}{more}"
+    has_it = len(found.wanted) == 1 and not found.depends(0) and found.has_wanted(0)
+    having = "every design has" if has_it else "no design has"
+    return f"{ranges}: {having} {wanted}: {' and '.join(met)}{more}"
 
 
 def _varied(span: tuple[str, str, str, str], kind: str) -> Varied:

@@ -173,8 +173,9 @@ class Sweep:
         )
 
     def _texts(self, found: DesignResult) -> tuple[str, ...]:
-        failure = found.failure or "; ".join(found.unjudged)
-        keeps = "no" if found.broken else "" if failure else "yes"
+        failure = found.failure or "; ".join(filter(None, (found.other_parts, *found.unjudged)))
+        unjudged = found.failure or found.unjudged
+        keeps = "no" if found.broken else "" if unjudged else "yes"
         return (keeps, next(iter(found.broken), ""), failure)[-len(self.texts) :]
 
 

@@ -184,7 +184,7 @@ def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tupl
     columns = inputs.binder.columns(inputs.values + shifts * inputs.spreads)
     every = answered(inputs.binder, columns, requested)
     lacking = [None] * len(requested)
-    rows = [lacking if isinstance(one, str) else one for one in every]
+    rows = [lacking if isinstance(one, str) else one.values for one in every]
     values = [[math.nan if isinstance(one, tuple) else one for one in row] for row in rows]
     return np.array(values, dtype=float), [one for one in every if isinstance(one, str)]
 

@@ -100,6 +100,7 @@ class Machine(Record):
         "Speed of rotation",
         "n",
         least=0,
+        also=("rpm", "upm", "drehzahl", "rotational_speed", "engine_speed"),
         absent="no velocities, accelerations or inertia in physical units",
     )
     cycle: str = field(

@@ -34,6 +34,8 @@ class ConnectingRod(Record):
         least=0,
         instead="share",
         needs="inertia",
+        or_else="it is the distance a from the crosshead pin; where the moment of inertia is not known, write the "
+        "reciprocating share 1 − a/L as 'share' in its place",
     )
     inertia: float | None = field(
         "inertia",
@@ -369,7 +371,9 @@ class Piston(Record):
     lever_ratio: its displacement over that of the crosshead, 1 where both are on one rod; see `TandemPiston`.
     """
 
-    bore: float = field("length", "Diameter of the cylinder", "d", above=0)
+    bore: float = field(
+        "length", "Diameter of the cylinder", "d", above=0, also=("bohrung", "cylinder_diameter")
+    )
     head_end_rod: float = field(
         "length", "Diameter of the rod through the head end", default=0.0, least=0
     )

@@ -461,8 +461,13 @@ class KnownEffort(Columns):
         if file is None:
             return points_of(unit, points or [])
         up, down = unit
+        layout_of_file = cls.layout(layout)
         samples = samples_of_file(
-            file, cls.layout(layout), "torque", lambda torques: torques * up / down
+            file,
+            layout_of_file,
+            "torque",
+            lambda torques: torques * up / down,
+            most_turns=MOST_TURNS,
         )
         if len(samples.values) > 1:
             lap = samples.angles[-1] - samples.angles[0]

@@ -185,7 +185,11 @@ def _step(node: Node, one: Override, place: int) -> Node:
             node[step] = one.value
         return node[step]
     if not isinstance(node, dict):
-        _refused(one.given, f"there is nothing below '{above}', which is {node_kind(node)}")
+        mapping = f"{one.path[place - 1]}: {{…, {step}: …}}"
+        advice = f"if it may be a mapping, write it as one in the file, '{mapping}'"
+        _refused(
+            one.given, f"there is nothing below '{above}', which is {node_kind(node)}; {advice}"
+        )
     if last:
         node[str(step)] = one.value
     elif is_nothing(node.get(str(step), Plain())):

@@ -118,7 +118,7 @@ class SliderCrank(Mechanism):
         "L",
         above=0,
         words=_INFINITE,
-        also=("con_rod", "conrod", "connecting_rod", "rod_length"),
+        also=("con_rod", "conrod", "connecting_rod", "rod_length", "pleuel", "schubstange"),
     )
     _rod_ratio = alternative(
         "ratio",
@@ -136,6 +136,7 @@ class SliderCrank(Mechanism):
         "Offset of the stroke line from the shaft, positive toward the side of the outstroke",
         "e",
         default=0.0,
+        also=("pin_offset", "gudgeon_pin_offset", "wrist_pin_offset", "desaxe"),
     )
 
     name = "slider-crank"

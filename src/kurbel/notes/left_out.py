@@ -210,9 +210,8 @@ def bearings_left_out(case: Case) -> Iterator[LeftOut]:
 def balance_left_out(case: Case, compare: bool = False) -> Iterator[LeftOut]:
     """Yield what the balance leaves out; compare: with the figures of first order requested."""
     balance, machine = case.balance, case.machine
-    moving = {throw.name for throw in balance.throws}
     for cylinder in machine.cylinders:
-        if cylinder.name not in moving:
+        if not cylinder.masses:
             yield LeftOut(f"inertia of {cylinder.name}", "no masses given")
     if balance.omega is None:
         yield LeftOut(

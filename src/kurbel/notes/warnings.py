@@ -360,7 +360,10 @@ def rod_ratio_notes(case: Case) -> Iterator[str]:
             and ratio < math.inf
             and (kind := _kind_of(forces))
         ):
-            yield f"{forces.drive.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}."
+            locomotives = (
+                "; locomotives have 6 to 11" if kind == "steam engines" and ratio > most else ""
+            )
+            yield f"{forces.drive.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}{locomotives}."
 
 
 def _kind_of(forces: CylinderForces) -> str:

@@ -33,9 +33,9 @@ def digit_scale(values: Iterable[CellValue], digits: int | None = None) -> Scale
 
     By default there are four, and whole numbers keep all of theirs; with `digits` they are rounded, too.
 
-    >>> scale_of([1.2, -0.014]), scale_of([81134.0]), scale_of([81134.0], 2)
+    >>> digit_scale([1.2, -0.014]), digit_scale([81134.0]), digit_scale([81134.0], 2)
     (Scale(decimals=3, exponent=0), Scale(decimals=0, exponent=0), Scale(decimals=-3, exponent=0))
-    >>> scale_of([2.4e7, 1.0])
+    >>> digit_scale([2.4e7, 1.0])
     Scale(decimals=2, exponent=6)
     """
     largest = max((abs(value) for value in values if value is not None), default=0.0)

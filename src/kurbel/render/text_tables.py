@@ -119,12 +119,12 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
     scale would print it as 0.0.
     """
     blank = "_" if table.headed else " "
-    columns = [
-        TextColumn(
-            head, "", [look.number(look.text(name.replace("_", blank))) for name in names], "name"
+    columns = list[TextColumn]()
+    for head, names in zip(table.heads, zip(*table.names)):
+        words = [table.words.get(name) or name.replace("_", blank) for name in names]
+        columns.append(
+            TextColumn(head, "", [look.number(look.text(text)) for text in words], "name")
         )
-        for head, names in zip(table.heads, zip(*table.names))
-    ]
     sharing: dict[str, list[CellValue]] = {}
     for column in table.columns:
         if column.decimals is None and not column.alone:

@@ -9,7 +9,9 @@ from kurbel.notes.left_out import (
 )
 from kurbel.notes.warnings import as_far_as_solved, bearing_warnings, of_machine, rods_on_pin
 from kurbel.solver.case import Case
+from kurbel.solver.chapters.bearings import Bearing
 from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.tables import together
 
 
 def _loaded(case: Case) -> list[Subject]:
@@ -22,6 +24,7 @@ def _loaded(case: Case) -> list[Subject]:
             part.at,
             left_out=bearing_left_out(*part.size, part.omega),
             of=part.cylinders[0].drive.name if part.of_rod else "",
+            where="" if part.of_rod else _next_to(part),
         )
         for part in case.bearings.parts
     ]
@@ -30,6 +33,12 @@ def _loaded(case: Case) -> list[Subject]:
         *parts,
         Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True),
     ]
+
+
+def _next_to(bearing: Bearing) -> str:
+    """Return the cylinders on the throws to either side of a main bearing, in words."""
+    names = [cylinder.drive.name for cylinder in bearing.cylinders]
+    return f"next to {together(names)}"
 
 
 def _bearing_notes(case: Case) -> Iterator[str]:

@@ -34,7 +34,10 @@ def _delivering(case: Case) -> list[Subject]:
         whole = Subject("whole machine", found.pump, found.pump.at)
     warnings = chain(of_machine(case), delivery_warnings(found))
     return [
-        *(Subject(stage.name, stage, tables=_ends_tables(stage)) for stage in found.stages),
+        *(
+            Subject(stage.name, stage, tables=_ends_tables(stage), part=stage.part)
+            for stage in found.stages
+        ),
         *(Subject(piston.name, piston, piston.at) for piston in found.pistons),
         whole._replace(left_out=delivery_left_out(found), warnings=warnings, whole=True),
     ]

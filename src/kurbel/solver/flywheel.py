@@ -26,7 +26,12 @@ from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.quantity import Computed, Heading, key_value, value
-from kurbel.solver.chapters.coupling import ElasticCoupling, natural_order
+from kurbel.solver.chapters.coupling import (
+    CouplingTorque,
+    ElasticCoupling,
+    StiffCoupling,
+    natural_order,
+)
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, part
@@ -36,7 +41,7 @@ from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
 from kurbel.solver.state import State
 
 RIGID_ABOVE = 100.0
-"""Natural order above which a coupling counts as rigid: its torque differs from that of a rigid one by 1 in 10⁴."""
+"""Natural order above which a coupling counts as rigid: it amplifies the first harmonics by no more than 1 in 10⁴."""
 _MISSED = 1e-3
 """Relative deviation from the required δ above which there is a warning."""
 _LARGEST_EXPONENT = 709.7
@@ -164,7 +169,7 @@ class MachineTurning(Results):
             case "alpha":
                 return None if self.speed is None else self.speed.alpha
             case "M_coupling":
-                return None if self.elastic is None else self.elastic.torque
+                return None if self.coupled is None else self.coupled.torque
         return self._from_others(column)
 
     def _at_crank(self, torque: Array) -> tuple[Pieces, Array] | None:
@@ -523,6 +528,17 @@ class MachineTurning(Results):
     def rigid(self) -> bool:
         """Whether the coupling counts as rigid, n_e > 100; of many machines, whether all do."""
         return self.natural_order is not None and not some(self.natural_order <= RIGID_ABOVE)
+
+    @part(CouplingTorque)
+    def coupled(self) -> CouplingTorque | None:
+        """The torque in the coupling; None without one, and without a speed line.
+
+        Raises NoSolutionError where no periodic motion is found.
+        """
+        coupling, line = self.machine.coupling, self.speed
+        if coupling and self.rigid and isinstance(line, RigidLine):
+            return StiffCoupling(line, coupling.inertia)
+        return self.elastic
 
     @part(ElasticCoupling)
     def elastic(self) -> ElasticCoupling | None:

@@ -437,7 +437,10 @@ def counterweights_of(machine: Machine, throws: Sequence[CylinderThrow]) -> Iter
             planes = weights.planes or wheels_of(machine)
             for throw in owners:
                 weight = throw.weight(-(throw.rotating + weights.share * throw.mass))
-                yield from split_by_lever(weight, planes, throw.name) if planes else (weight,)
+                if not planes:
+                    yield weight
+                elif throw.cylinder.masses:
+                    yield from split_by_lever(weight, planes, throw.name)
         else:
             # an angle counts from the throw; with several throws a weight without a place belongs to none of them
             otherwise = owners[0].place if len(owners) == 1 else None

@@ -63,7 +63,8 @@ class Subject(NamedTuple):
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
     state with the columns, None without columns; of: the cylinder that a pin belongs to; pistons: those of a cylinder
     whose rod has several; whole: it is the whole machine. The rest is computed only for a report, and
-    once: left_out, warnings, tables.
+    once: left_out, warnings, tables. part: its name in columns where `name` is a number that may mean another part of
+    another machine; where: what it is next to, which tells parts of one number from one another.
     """
 
     name: str
@@ -75,6 +76,13 @@ class Subject(NamedTuple):
     of: str = ""
     pistons: "Sequence[Subject]" = ()
     whole: bool = False
+    part: str = ""
+    where: str = ""
+
+    @property
+    def identity(self) -> str:
+        """What it is in any machine: a part with the same identity in another design is the same part."""
+        return f"{self.part or self.name} {self.where}".rstrip()
 
     @property
     def lists(self) -> Lists:
@@ -454,8 +462,8 @@ class Places(NamedTuple):
     """A table of places with its values in SI; see `PlaceTable`.
 
     declared: its quantities by id; one that no row has is left out. headed: the names of the rows are texts for people;
-    otherwise spaces in them become underscores. alone: the digits to which every value is rounded by itself; values of
-    one kind then have one unit.
+    otherwise programs have them without spaces and punctuation. alone: the digits to which every value is rounded by
+    itself; values of one kind then have one unit.
     """
 
     id: str
@@ -494,13 +502,34 @@ class Places(NamedTuple):
                     decimals=decimals, alone=0 if quantity.kind == "angle" else self.alone
                 )
             )
-        names = [
-            names if self.headed else tuple(name.replace(" ", "_") for name in names)
-            for names, _ in self.rows
-        ]
+        names = [names for names, _ in self.rows]
+        words: dict[str, str] = {}
+        if not self.headed:
+            words = {_as_id(name): name for row in names for name in row}
+            names = [tuple(map(_as_id, row)) for row in names]
         return PlaceTable(
-            self.id, self.title, self.heads, tuple(names), tuple(columns), self.headed, self.in_note
+            self.id,
+            self.title,
+            self.heads,
+            tuple(names),
+            tuple(columns),
+            self.headed,
+            self.in_note,
+            words,
         )
+
+
+_BETWEEN = re.compile(r"[\s,:;=–]+")
+"""What parts the words of the name of a row."""
+
+
+def _as_id(name: str) -> str:
+    """Return the name of a row as programs have it.
+
+    >>> _as_id("shaft n = 1, against the crank: A")
+    'shaft_n_1_against_the_crank_A'
+    """
+    return _BETWEEN.sub("_", name)
 
 
 def shown_key_values(found: Iterable[tuple[Quantity, object]], system: str) -> list[KeyValue]:

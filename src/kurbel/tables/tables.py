@@ -3,7 +3,7 @@
 import math
 import re
 from array import array
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import NamedTuple, TypeVar, Union
 
@@ -63,8 +63,9 @@ class PlaceTable(NamedTuple):
     """A table whose rows are named places instead of crank angles; `id` names it in csv and json.
 
     heads: titles of the names, such as (part, place), or none.
-    names: of each row, one for each head; a blank is _ unless headed.
+    names: of each row, one for each head; as programs have them unless headed.
     headed: the heads are printed, and the names as they are; otherwise a _ is printed as a blank.
+    words: what people read for names in which more than the blanks is different.
     in_note: a note has the whole content, so that the table is not printed.
     """
 
@@ -75,6 +76,7 @@ class PlaceTable(NamedTuple):
     columns: tuple[Column, ...]
     headed: bool = False
     in_note: bool = False
+    words: Mapping[str, str] = {}
 
 
 PISTONS = "pistons"

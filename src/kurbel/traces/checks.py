@@ -151,6 +151,8 @@ def _turns_in_pairs(reading: TraceReading) -> str:
     seen = f"differ in pairs, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
     if reading.setting.cycle == 360:
         return f"its turns {seen}: a four-stroke cycle? write 'cycle: four-stroke' at the top; {reading.then(times=2)}"
+    if not trace.even:  # numbers of samples are
+        return ""
     joined = joined_in_pairs(trace.samples).mean(axis=0)
     step = trace.period / (len(joined) - 1)
     then = reading.then(reading.angles[0] - trace.angles[0] + step * np.arange(len(joined)), joined)

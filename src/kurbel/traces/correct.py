@@ -22,14 +22,14 @@ from kurbel.numerics.pieces import Angles, Pieces, refined
 
 CYCLES = {"two-stroke": 1, "four-stroke": 2}
 """Cycle -> revolutions of the shaft."""
-PERIODS = (360.0, 720.0)
 _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
 
 
-def period_of(span: float) -> float:
-    """Return 360 or 720, the shortest cycle that angles over so many degrees fit into; 0 if neither."""
-    return next((period for period in PERIODS if span <= period * (1 + _ROUNDING)), 0.0)
+def period_of(span: float, most_turns: int = 2) -> float:
+    """Return the fewest whole turns in degrees, 360 or more, that angles over so many degrees fit into; 0 for more."""
+    turns = max(1, math.ceil(span / 360 / (1 + _ROUNDING)))
+    return 360.0 * turns if turns <= most_turns else 0.0
 
 
 def at_equal_steps(angles: Array) -> bool:

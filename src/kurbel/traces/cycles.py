@@ -1,7 +1,8 @@
 """From samples of one or many cycles, as a logger wrote them, to laps of whole cycles over the same angles.
 
 A lap is the range after which the angle restarts: a turn, or a four-stroke cycle. If the angle increases without
-restart, a lap is one turn, and two make a four-stroke cycle. Incomplete cycles are rejected, with the row.
+restart, a lap is one turn, and two make a four-stroke cycle; a known effort may run over more turns, which are then one
+cycle. Incomplete cycles are rejected, with the row.
 """
 
 import math
@@ -14,8 +15,8 @@ from kurbel.arrays import Array, Indices
 from kurbel.declared.forms.values import out_of_size
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, NotANumber, RuleError
-from kurbel.traces.correct import PERIODS, period_of
-from kurbel.traces.read import LIMITS, Layout, read_table
+from kurbel.traces.correct import period_of
+from kurbel.traces.read import LIMITS, MOST_NUMBERS, Layout, read_table
 
 
 class Laps(NamedTuple):
@@ -35,11 +36,14 @@ class Recording:
     """Samples in the order of time, which one step after another puts in order and closes to laps.
 
     angles (n,) in degrees; values (k, n); rows (n,): of which row each is; notes: what was changed. place: of a row, as
-    a fault that lacks a message.
+    a fault that lacks a message; most_turns: of the shaft in one cycle.
     """
 
-    def __init__(self, angles: Array, values: Array, place: Callable[[int], Fault]) -> None:
+    def __init__(
+        self, angles: Array, values: Array, place: Callable[[int], Fault], most_turns: int = 2
+    ) -> None:
         self.angles, self.values, self.rows = angles, values, np.arange(len(angles))
+        self.most_turns = most_turns
         self._place = place
         self.notes: list[str] = []
 
@@ -51,6 +55,26 @@ class Recording:
             self.rows[which],
         )
 
+    @property
+    def span(self) -> float:
+        """Degrees from its smallest to its largest angle."""
+        return float(np.ptp(self.angles))
+
+    @property
+    def period(self) -> float:
+        """Degrees of the shortest cycle that its angles fit into, 0 where they run over more turns than one has."""
+        return period_of(self.span, self.most_turns)
+
+    def refuse_hole(self, index: int, low: float, high: float, advice: str = "") -> NoReturn:
+        """Raise RuleError for a stretch without samples, which begins at this one."""
+        several = self.most_turns > 2
+        whole = (
+            "a diagram covers whole turns of 360 deg"
+            if several
+            else "a trace covers a whole cycle of 360 or 720 deg"
+        )
+        self.refuse(index, f"no samples from {low:.10g} to {high:.10g} deg; {whole}{advice}")
+
     def refuse(self, index: int, message: str, fault: type[Fault] = Fault) -> NoReturn:
         """Raise RuleError with what is wrong with a sample."""
         place = self._place(int(self.rows[index]))
@@ -60,18 +84,25 @@ class Recording:
 
 
 def samples_of_file(
-    file: str, layout: Layout, kind: str, base: Callable[[Array], Array], against: bool = False
+    file: str,
+    layout: Layout,
+    kind: str,
+    base: Callable[[Array], Array],
+    against: bool = False,
+    most_turns: int = 2,
 ) -> Laps:
     """Return the laps of what was measured from a file; raises RuleError.
 
     kind: of the values, pressure or torque; base: turns figures of the file into the base of their unit; against:
-    angles count against the rotation.
+    angles count against the rotation; most_turns: of the shaft in one cycle.
     """
     angles, figures, line = read_table(file, layout)
     with np.errstate(over="ignore"):  # what is beyond all numbers is refused with its line
         values = base(figures)
     try:
-        return whole_cycles(angles, values, lambda row: Fault(("file",), line(row)), kind, against)
+        return whole_cycles(
+            angles, values, lambda row: Fault(("file",), line(row)), kind, against, most_turns
+        )
     except RuleError as error:
         (fault,) = error.faults
         if layout.recorded_speed is None or "angle_unit" in fault.message:
@@ -86,13 +117,14 @@ def whole_cycles(
     place: Callable[[int], Fault],
     kind: str = "pressure",
     against: bool = False,
+    most_turns: int = 2,
 ) -> Laps:
     """Return samples closed to whole cycles; raises RuleError for what cannot be.
 
     angles (n,) in degrees; values (k, n) in the base of their kind, a row for each measured column; place: names a row;
-    against: angles count against the rotation.
+    against: angles count against the rotation; most_turns: of the shaft in one cycle.
     """
-    recording = Recording(-angles if against else angles, values, place)
+    recording = Recording(-angles if against else angles, values, place, most_turns)
     _refuse_no_numbers(recording, kind)
     steps = np.diff(recording.angles)
     if against and (steps < 0).sum() > (steps > 0).sum():  # in the order of the angle, not of time
@@ -127,9 +159,10 @@ def _put_in_order(recording: Recording) -> None:
     """
     steps = np.diff(recording.angles)
     falls = np.flatnonzero(steps < 0)
+    most = 360.0 * recording.most_turns
     if (
         len(falls) == 1
-        and 180 < -steps[falls[0]] <= PERIODS[-1]
+        and 180 < -steps[falls[0]] <= most
         and recording.angles[-1] <= recording.angles[0]
     ):
         first = int(falls[0]) + 1
@@ -166,15 +199,16 @@ _REST = 0.05
 
 
 def _lay_over_one_lap(recording: Recording) -> None:
-    """Lay all laps over the angles of the first, if there are several; what follows the last whole lap is left out.
+    """Lay all laps over the same angles, if there are several; what follows the last whole lap is left out.
 
-    Between samples at other angles than those of the first lap they are straight. Raises RuleError for laps with holes,
-    and for an angle that counts on over laps that are not alike, each and the next but one: it may count samples.
+    Laps at equal angles keep these. Others are laid over the angles of all of them, straight between their own samples,
+    so that each keeps its area and its corners. Raises RuleError for laps with holes, and for an angle that counts on
+    over laps that are not alike, each and the next but one: it may count samples.
     """
     begins_anew = bool((np.diff(recording.angles) < 0).any())
-    if not begins_anew and period_of(float(np.ptp(recording.angles))):
+    if not begins_anew and recording.period:
         return
-    lap = _count_on(recording) if begins_anew else PERIODS[0]
+    lap = _count_on(recording) if begins_anew else 360.0
     angles, step = recording.angles, usual_step(recording.angles)
     laps = int((angles[-1] - angles[0] + 1.5 * min(step, lap / 20)) // lap)
     bounds = np.searchsorted(
@@ -185,15 +219,21 @@ def _lay_over_one_lap(recording: Recording) -> None:
     _refuse_large_holes(recording, angles)
 
     count, end = int(bounds[1]), int(bounds[-1])
-    wanted = angles[:count] + lap * np.arange(laps)[:, np.newaxis]
+    offsets = lap * np.arange(laps)[:, np.newaxis]
+    from_samples: Indices = np.arange(count)
+    shared: Array = angles[:count]
     even = (np.diff(bounds) == count).all()
     if (
         even
-        and np.abs(angles[:end].reshape(laps, count) - wanted).max() <= _SAME_ANGLE * lap / count
+        and np.abs(angles[:end].reshape(laps, count) - shared - offsets).max()
+        <= _SAME_ANGLE * lap / count
     ):
         each = recording.values[:, :end].reshape(-1, count)
     else:
-        each = np.concatenate([np.interp(wanted, angles, column) for column in recording.values])
+        shared, from_samples = _angles_of_all(angles[:end], bounds, lap)
+        each = np.concatenate(
+            [np.interp(shared + offsets, angles, column) for column in recording.values]
+        )
     swing = each - each.mean()
     if (
         not begins_anew
@@ -209,8 +249,26 @@ def _lay_over_one_lap(recording: Recording) -> None:
         recording.notes.append(
             f"the {len(angles) - end} samples after lap {laps} of {lap:g} deg are left out"
         )
-    recording.keep(slice(count))
+    recording.keep(from_samples)
+    recording.angles = shared
     recording.values = each
+
+
+def _angles_of_all(angles: Array, bounds: Indices, lap: float) -> tuple[Array, Indices]:
+    """Return the angles (n,) in degrees of the samples of all laps, as if in the first, and of which sample each is.
+
+    angles (k,): rising over all laps; bounds (m + 1,): index of the first sample of each lap. Equal angles are there
+    once. Of too many every second is left out, or more.
+    """
+    laps = len(bounds) - 1
+    offsets = np.repeat(lap * np.arange(laps), np.diff(bounds))
+    # the first sample of a lap may be early by rounding
+    in_lap = np.maximum(angles - offsets, angles[0])
+    smallest_step = _SAME_ANGLE * lap / int(np.diff(bounds).max())
+    _, firsts = np.unique(np.rint((in_lap - angles[0]) / smallest_step), return_index=True)
+    most = max(int(bounds[1]), min(MOST_POINTS, MOST_NUMBERS // laps))
+    chosen = firsts[:: math.ceil(len(firsts) / most)]
+    return in_lap[chosen], chosen
 
 
 def _count_on(recording: Recording) -> float:
@@ -218,12 +276,13 @@ def _count_on(recording: Recording) -> float:
 
     A closing sample gives way to the first of the next lap. Raises RuleError for more than two turns.
     """
-    span, falls = float(np.ptp(recording.angles)), np.diff(recording.angles) < 0
-    lap = period_of(span)
+    falls = np.diff(recording.angles) < 0
+    lap = recording.period
     if not lap:
         turn = "a turn has 360, a four-stroke cycle 720 deg: other units?"
         recording.refuse(
-            int(np.argmax(falls)) + 1, f"the angle begins anew after {span:.10g} deg; {turn}"
+            int(np.argmax(falls)) + 1,
+            f"the angle begins anew after {recording.span:.10g} deg; {turn}",
         )
     recording.angles = recording.angles + lap * np.append(0, np.cumsum(falls))
     closing = falls & (np.diff(recording.angles) <= 1e-9 * lap)
@@ -239,7 +298,6 @@ _LARGE_HOLES = ((20.0, 10.0), (45.0, 3.0))
 """(degrees, times the median step): a gap beyond both is not bridged by a straight line."""
 _WIDE = 3.0
 """Times the usual step: a wider one is reported as missing samples."""
-_HOLE = "no samples from {:.10g} to {:.10g} deg; a trace covers a whole cycle of 360 or 720 deg"
 
 
 def _leave_out_twins(recording: Recording) -> None:
@@ -254,14 +312,19 @@ def _leave_out_twins(recording: Recording) -> None:
     same = twins & (np.diff(recording.values) == 0).all(axis=0)
     if same.any() and not np.count_nonzero(twins) >= _ROUNDED * len(angles) > 2:
         recording.keep(np.append(True, ~same))
-        recording.notes.append(f"{np.count_nonzero(same)} samples given twice count once")
+        count = np.count_nonzero(same)
+        recording.notes.append(
+            f"{count} samples given twice count once"
+            if count > 1
+            else "1 sample given twice counts once"
+        )
 
 
 def _closed(recording: Recording) -> Laps:
     """Close the cycle with the first sample if only the last one is missing; raises RuleError for large gaps."""
     angles, values = recording.angles, recording.values
-    span = float(np.ptp(angles))
-    period = period_of(span)
+    span = recording.span
+    period = recording.period
     if not period:
         recording.refuse(-1, f"the samples run over {span:g} deg; cut whole cycles out")
     if len(angles) > MOST_POINTS:
@@ -278,7 +341,7 @@ def _closed(recording: Recording) -> Laps:
         )
         if min(abs(span - 2 * math.pi), abs(span / 2 - 2 * math.pi)) < 0.2:
             other = "; are these radians? Then write 'angle_unit: rad'"
-        recording.refuse(-1, _HOLE.format(angles[-1], end) + other)
+        recording.refuse_hole(-1, angles[-1], end, other)
     completed = missing > 1e-9 * period
     if completed:
         values = np.append(values, values[:, :1], axis=1)
@@ -302,7 +365,7 @@ def _refuse_large_holes(recording: Recording, angles: Array) -> None:
     )
     if len(wide):
         i = int(wide[0])
-        recording.refuse(i, _HOLE.format(angles[i], angles[i + 1]))
+        recording.refuse_hole(i, angles[i], angles[i + 1])
 
 
 def usual_step(angles: Array) -> float:

@@ -154,8 +154,9 @@ def _numbers(text: str, layout: Layout) -> Array:
     split = layout.delimiter == "comma" and "." not in body and _SPLIT_DECIMALS.search(body)
     if split:
         number = layout.skip_rows + body.count("\n", 0, split.start()) + 1
+        row = f": '{_shown(split[0])}'" if _shown(split[0]) else ""
         message = (
-            f"line {number}: '{_shown(split[0])}' is whole numbers in columns, or has a decimal comma before its last "
+            f"line {number}{row} has whole numbers in its columns, or has a decimal comma before its last "
             "digits, which begin with 0; export the file with decimal points, or with semicolons between columns and "
             "write 'delimiter: semicolon' and 'decimal: comma'"
         )

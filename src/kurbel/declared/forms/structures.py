@@ -340,6 +340,9 @@ class Listing(Form):
         """Read a list into a tuple, with REFUSED in place of what could not be read."""
         if isinstance(value, Plain) and not value:
             refused("no value here; write a list below it, each item after '- '")
+        if isinstance(value, dict) and self.is_item(value):
+            item = ", ".join(f"{key}: …" for key in value)
+            refused(f"expected a list, got one of its items; write '{path[-1]}: [{{{item}}}]'")
         if not isinstance(value, list):
             refused(f"expected a list, each item after '- ', got {node_kind(value)}")
         if not value:
@@ -350,6 +353,12 @@ class Listing(Form):
         return tuple(
             self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole)
         )
+
+    def is_item(self, mapping: Tree) -> bool:
+        """Return whether a mapping that is given in the place of the list has the keys of one of its items."""
+        if not isinstance(self.item, RecordForm) or not mapping:
+            return False
+        return mapping.keys() <= self.item.names(mapping).keys()
 
     def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
         """Return items with the keys that `like` copies; an error in a copied key is reported once, at the original."""
@@ -412,11 +421,27 @@ class OneOf(Form):
             if name := next((name for name in value if name in words), ""):
                 alone = f"- {name}" if isinstance(path[-1], int) else f"{path[-1]}: {name}"
                 return reading.fault((*path, name), f"takes no value; write '{alone}'", at_key=True)
+            if (listing := self._list_of(value)) is not None:
+                return listing.read(reading, value, path)
         for form in self._fitting(value):
             return form.read(reading, value, path)
         return refused(
             f"expected {self.expected}, got {'nothing' if is_nothing(value) else node_kind(value)}"
         )
+
+    def _list_of(self, mapping: Tree) -> "Listing | None":
+        """Return the list, among these forms, of which a mapping is an item; None if it is no item."""
+        of_records = {
+            key for form in self.forms if isinstance(form, RecordForm) for key in form.keys
+        }
+        for form in self.forms:
+            if (
+                isinstance(form, Listing)
+                and form.is_item(mapping)
+                and not mapping.keys() & of_records
+            ):
+                return form
+        return None
 
     def kind_as_written(self, value: Node | None) -> str:
         """Return the kind of the number that is written in this way."""

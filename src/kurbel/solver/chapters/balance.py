@@ -57,6 +57,8 @@ _FEWEST = 8
 """Smallest number of orders, so that those of balance shafts are included."""
 _MOST = 24
 """Largest number of orders listed; a rod hardly longer than the crank has thousands, which decrease slowly."""
+_AT_ONCE = 64
+"""Orders that are computed at all angles together."""
 _EPS = float(np.finfo(float).eps)
 _REAL = 1e-12
 """Rounding of a direction (relative), or of a lever in m."""
@@ -159,11 +161,17 @@ def _summed(waves: ComplexArray, levers: Sequence[Number]) -> ClosedCurve:
 
 def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
     """Return the force or moment vectors (n,) of one machine at crank angles (n,) in degrees; rounding is set to 0."""
+    waves = curve.waves[:, 0]
+    present = np.flatnonzero(waves)
     found = np.zeros(degrees.shape, complex)
-    for number, wave in zip(curve.numbers.tolist(), curve.waves[:, 0]):
-        if wave:
-            found += wave * unit_vector(number * degrees)
-    return unless_cancelled(found, np.abs(curve.waves).sum())
+    for begin in range(0, len(present), _AT_ONCE):
+        block = present[begin : begin + _AT_ONCE]
+        turned = waves[block, None] * unit_vector(np.multiply.outer(curve.numbers[block], degrees))
+        for (
+            wave
+        ) in turned:  # one after another, so that the sum at an angle does not depend on the others
+            found += wave
+    return unless_cancelled(found, np.abs(waves).sum())
 
 
 # over the crank angle
@@ -393,23 +401,25 @@ class MachineBalance(Results):
             compare,
         )
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
-        self.throws = tuple(
-            throw
-            for throw in throws_with_masses(machine, first)
-            if machine.cylinders[throw.number].masses
-        )
-        if not any(some(one.mass != 0) or some(one.rotating != 0) for one in self.throws):
+        # counterweights turn with their throw, whether or not its cylinder has masses
+        cranks = throws_with_masses(machine, first)
+        with_masses = [throw for throw in cranks if throw.cylinder.masses]
+        self.counterweights = tuple(counterweights_of(machine, cranks)) if cranks else ()
+        moving = any(some(throw.mass != 0) or some(throw.rotating != 0) for throw in with_masses)
+        turning = any(some(weight.product != 0) for weight in self.counterweights)
+        if not (moving or turning):
             raise UsageError(
                 f"{machine.name}: no moving masses to balance; give 'masses' to its cylinders"
             )
-        for throw in self.throws:
+        for throw in with_masses:
             if throw.cylinder.mechanism.quick_return:
                 raise UsageError(
                     f"{throw.name}: the masses of a quick-return mechanism are not known"
                 )
+        self.throws = tuple(with_masses or cranks)
+        self._first_arm = cranks[0].arm
         self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
         self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
-        self.counterweights = tuple(counterweights_of(machine, self.throws))
 
     def _columns(self, phi: Array, within: Array) -> BalanceColumns:
         return BalanceColumns(self, phi, within)
@@ -561,7 +571,7 @@ class MachineBalance(Results):
 
     def angle_of(self, product: ComplexArray) -> Any:
         """Return the direction of a weight (machines,) from throw 1 in degrees, in (−180, 180]; none for no weight."""
-        degrees = np.degrees(np.angle(product / self.throws[0].arm))
+        degrees = np.degrees(np.angle(product / self._first_arm))
         degrees = np.where(degrees > _REAL - 180, degrees, 180.0)
         return self.shown(np.where(product != 0, degrees, math.nan))
 

@@ -8,6 +8,7 @@
     V̇ = η_v V_s n, m = p_s V̇/(R T₁)          capacity at suction, mass flow
     T₂ = T₁ (p_d/p_s)^((n − 1)/n)            temperature of delivery
     N_is = κ/(κ − 1) p_s V̇ [(p_d/p_s)^((κ − 1)/κ) − 1]
+    A_W = 1 − A_R,m/A_R,0                    share of the work against pipe friction that vessels save
 
 Pressures in the formulas are absolute. The flow is sampled on the pieces of the cycle, which are cut at dead centres,
 where the valves change.
@@ -165,6 +166,7 @@ _WORKS = {
     "_bare": ("R,0", "without vessels"),
     "_steady": ("R,m", "with vessels at both"),
 }
+_PIPE_WORKS = tuple(f"pipe_work{state}" for state in _WORKS)
 
 
 class Delivery(Results):
@@ -203,7 +205,7 @@ class Delivery(Results):
         _WORKS, "pipe_work*", "A_*", "energy", "Work against friction in the pipes per cycle, *"
     )
     vessel_saving = value(
-        "A_W", "ratio", "Share of the work against pipe friction that a vessel saves"
+        "A_W", "ratio", "Share of the work against pipe friction that vessels at all pipes save"
     )
 
     def __init__(
@@ -286,7 +288,7 @@ class Delivery(Results):
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         found["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
         found["volume_fluctuation"] = swing = self._swing(draws=False)
-        found["vessel_saving"] = 1 - mean**3 / self._mean(cubed=True)
+        found["vessel_saving"] = self._saving(mean)
         for pipe, draws in self._pipes:
             if pipe.vessel and draws:
                 sizes = _vessel(pipe.vessel, self._swing(draws=True), "suction")
@@ -299,9 +301,9 @@ class Delivery(Results):
             return found
 
         found["flow_mean"] = mean * self.omega
-        works = [self._pipe_works(pipe, draws) for pipe, draws in self._pipes]
-        for id, terms in zip(("pipe_work", "pipe_work_bare", "pipe_work_steady"), zip(*works)):
-            found[id] = total(*terms)
+        if self._pipes:
+            for id, work in zip(_PIPE_WORKS, self._works_of_pipes):
+                found[id] = work * self.omega**2
         if self.pump and self.pump.suction_pipe:
             liquid, heads = self.pump.liquid, self.sampled["friction_head"]
             if "acceleration_head" in self.sampled:
@@ -311,17 +313,32 @@ class Delivery(Results):
             found["suction_lift_max"] = static - most
         return found
 
-    def _pipe_works(self, pipe: Pipe, draws: bool) -> tuple[Number, Number, Number]:
-        """Return the work in J per cycle against friction in a pipe as it is, without a vessel, and with one."""
+    def _saving(self, mean: Number) -> Number:
+        """Return the share of the work against friction that vessels at all pipes save: 1 − A_R,m/A_R,0.
+
+        Without pipes it is that of one for the flow delivered, of which the mean per radian is given in m³.
+        """
+        of_flow_alone = 1 - mean**3 / self._mean(cubed=True)
+        if not self._pipes:
+            return of_flow_alone
+        _, bare, steady = self._works_of_pipes
+        rubs = bare > 0
+        return where(rubs, 1 - steady / where(rubs, bare, 1.0), of_flow_alone)
+
+    @cached_property
+    def _works_of_pipes(self) -> tuple[Number, ...]:
+        """Works over ω² per cycle against friction in all pipes: as they are, without vessels, with one at each."""
+        works = [self._works_of(pipe, draws) for pipe, draws in self._pipes]
+        return tuple(total(*terms) for terms in zip(*works))
+
+    def _works_of(self, pipe: Pipe, draws: bool) -> tuple[Number, Number, Number]:
+        """Return the works over ω² against friction in a pipe: as it is, without a vessel, and with one."""
         assert self.pump is not None
-        scale = (
-            self.pump.liquid.density
-            * _friction(pipe)
-            * self.omega**2
-            * math.radians(self.pieces.cycle)
-        )
-        bare, steady = scale * self._mean(draws, cubed=True), scale * self._mean(draws) ** 3
-        return steady if pipe.vessel else bare, bare, steady
+        scale = self.pump.liquid.density * _friction(pipe) * math.radians(self.pieces.cycle)
+        bare = scale * self._mean(draws, cubed=True)
+        steady = scale * self._mean(draws) ** 3
+        as_it_is = steady if pipe.vessel else bare
+        return as_it_is, bare, steady
 
 
 def _section(pipe: Pipe) -> Number:
@@ -405,7 +422,8 @@ class CompressorEnd:
         ]
         if kappas:
             power = (kappas[0] - 1) / kappas[0]
-            found["isentropic_power"] = self.suction * capacity * (ratio**power - 1) / power
+            head = np.expm1(power * np.log(ratio)) / power
+            found["isentropic_power"] = self.suction * capacity * head
 
 
 _OF_ALL_ENDS = (
@@ -445,7 +463,8 @@ class CompressorStage(Results):
     )
 
     def __init__(self, ends: Sequence[CompressorEnd]) -> None:
-        self.name, self.ends = ends[0].owner, tuple(ends)
+        self.name = self.part = ends[0].owner
+        self.ends = tuple(ends)
         self.suction, self.delivery = ends[0].suction, ends[0].delivery
 
     @cached_property
@@ -554,15 +573,46 @@ class MachineDelivery:
 
 
 def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
-    """Return the stages that ends of equal pressures make, the lowest suction first; those without any last."""
-    groups: dict[object, list[CompressorEnd]] = {}
+    """Return the stages that ends of equal pressures make, the lowest suction first; those without any last.
+
+    Raises UsageError for many machines whose stages are not alike: they are computed one by one.
+    """
+    groups: list[list[CompressorEnd]] = []
     for end in ends:
-        pressures = () if end.suction is None else (end.suction, end.delivery)
-        groups.setdefault(
-            tuple(f"{np.mean(pressure):.9g}" for pressure in pressures) or end.owner, []
-        ).append(end)
-    stages = [CompressorStage(group) for group in groups.values()]
+        group = next((group for group in groups if _are_of_one_stage(group[0], end)), None)
+        if group is None:
+            groups.append([end])
+        else:
+            group.append(end)
+    stages = [CompressorStage(group) for group in groups]
     stages.sort(key=lambda one: math.inf if one.suction is None else float(np.mean(one.suction)))
     for number, stage in enumerate((one for one in stages if one.suction is not None), 1):
         stage.name = f"stage {number}"
+    for stage in stages:
+        stage.part = _part_of(stage.ends, ends)
     return tuple(stages)
+
+
+_SAME_PRESSURE = 1e-9
+"""Relative difference of pressures that are equal but for rounding."""
+
+
+def _are_of_one_stage(end: CompressorEnd, other: CompressorEnd) -> bool:
+    """Return whether two ends have suction and delivery pressure in common, or are of one piston without them."""
+    if end.suction is None or other.suction is None:
+        return end.suction is other.suction and end.owner == other.owner
+    same_suction = np.abs(end.suction - other.suction) <= _SAME_PRESSURE * np.abs(end.suction)
+    same_delivery = np.abs(end.delivery - other.delivery) <= _SAME_PRESSURE * np.abs(end.delivery)
+    same = np.ravel(same_suction & same_delivery)
+    if same.any() != same.all():
+        raise UsageError("the stages of these machines are not alike")
+    return bool(same.all())
+
+
+def _part_of(of_stage: Sequence[CompressorEnd], ends: Sequence[CompressorEnd]) -> str:
+    """Return the name of a stage by its pistons; by its ends, where a piston has others in another stage."""
+    names: list[str] = []
+    for end in of_stage:
+        has_others = any(other.owner == end.owner and other not in of_stage for other in ends)
+        names.append(f"{end.owner}, {end.end}" if has_others else end.owner)
+    return " + ".join(dict.fromkeys(names))

@@ -1,0 +1,413 @@
+"""Laws that hold for every machine, on random files and on those that are shipped.
+
+    python benchmarks/metamorphic.py [COUNT [SEED]]
+
+Two keys of a file vary at once, and four rows are computed together and each by itself; the same file is written with
+other units, with a cylinder that is `like` another one written out, with what `--set` gives as a load case; and csv is
+compared with json. Every difference above rounding is printed, and every fault of kurbel's own. Without a seed it is
+that of the day.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+import sys
+import time
+import traceback
+from collections import Counter
+from collections.abc import Iterator
+from datetime import date
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from click.testing import CliRunner
+from random_files import machine_file
+
+import kurbel
+from kurbel.cli import kurbel as command_line
+from kurbel.errors import KurbelError
+from kurbel.machine_file.overrides import dotted, leaves, tree_of
+from kurbel.machine_file.reader import machine_of
+from kurbel.solver.case import Case
+
+Random = np.random.Generator
+HOME = Path(__file__).parent.parent
+NUMBER = re.compile(r"(-?[0-9.]+(?:e[+-]?[0-9]+)?)(?: (.*))?")
+COLUMNS = (
+    *(
+        "b_max",
+        "c_max",
+        "T_max",
+        "S_max",
+        "N_max",
+        "P_max",
+        "p_max",
+        "work",
+        "power",
+        "mean_pressure",
+        "friction_work",
+    ),
+    *(
+        "dE",
+        "delta",
+        "J",
+        "M_max",
+        "M_mean",
+        "omega_max",
+        "F_free_max",
+        "M_free_max",
+        "M_roll_max",
+        "F_free_best",
+    ),
+    *(
+        "load_max",
+        "load_mean",
+        "unloaded_arc",
+        "sigma_pin_max",
+        "sigma_web_A_max",
+        "flow_mean",
+        "flow_max",
+    ),
+    *("volume_fluctuation", "capacity", "rod_compression_max", "reversal_angle", "frequency"),
+)
+"""Key values of every command, of which a machine has some."""
+SLOW = 30.0
+"""Seconds of CPU above which a machine is named."""
+ROUNDING = 1e-9
+"""Relative difference below which two runs agree: rounding, and searches that end within it."""
+
+
+def numbers_of(text: str) -> list[tuple[str, float, str]]:
+    """Return every key of a file whose value is a number, the number and its unit."""
+    origin = machine_of(text).origin
+    assert origin is not None
+    found = []
+    points = 0
+    for path, value in leaves(tree_of(origin)):
+        number = NUMBER.fullmatch(str(value))
+        points += isinstance(path[-1], int)
+        few_points = not isinstance(path[-1], int) or points <= 3
+        if number and few_points and not {"limits", "expect"} & set(map(str, path)):
+            found.append((dotted(path), float(number[1]), number[2] or ""))
+    return found
+
+
+def distance(value: Any, other: Any, size: float) -> float:
+    """Return by how much two key values differ, relative to the larger of them and to this size."""
+    if isinstance(value, tuple) or isinstance(other, tuple):
+        if not (isinstance(value, tuple) and isinstance(other, tuple) and len(value) == len(other)):
+            return math.inf
+        return max((abs(a - b) / 360 for a, b in zip(value, other)), default=0.0)
+    first = math.nan if value is None else float(value)
+    second = math.nan if other is None else float(other)
+    if math.isnan(first) or math.isnan(second):
+        return 0.0 if math.isnan(first) and math.isnan(second) else math.inf
+    return abs(first - second) / (max(abs(first), abs(second), size) or 1.0)
+
+
+# a batch against its machines one by one
+
+
+def batch_against_alone(text: str, random: Random) -> Iterator[str]:
+    """Yield by how much four designs differ that are computed together and alone; two keys vary."""
+    numbers = numbers_of(text)
+    if len(numbers) < 2:
+        return
+    case = Case(machine_of(text))
+    columns = [name for name in COLUMNS if has(case, name)]
+    if not columns:
+        return
+    for _ in range(4):
+        pair = [numbers[place] for place in random.choice(len(numbers), 2, replace=False)]
+        inputs = {key: varied(value, unit, random) for key, value, unit in pair}
+        try:
+            together = kurbel.sweep(text, inputs, columns)
+        except KurbelError:
+            continue
+        for row in range(4):
+            alone = kurbel.sweep(
+                text, {key: [texts[row]] for key, texts in inputs.items()}, columns
+            )
+            for name in together.keys() & alone.keys():
+                if "residual" in name:
+                    continue
+                if name in ("failure", "keeps"):
+                    if together[name][row] != alone[name][0]:
+                        yield f"{inputs} row {row}: {name} {together[name][row]!r}, alone {alone[name][0]!r}"
+                elif (apart := distance(together[name][row], alone[name][0], 0.0)) > ROUNDING:
+                    yield (
+                        f"{inputs} row {row}: {name} {together[name][row]!r}, alone {alone[name][0]!r}: {apart:.1e}"
+                    )
+            if together.keys() != alone.keys():
+                only = sorted(together.keys() ^ alone.keys())
+                yield f"{inputs} row {row}: columns {only} are in one of both only"
+
+
+def varied(value: float, unit: str, random: Random) -> list[str]:
+    """Return four values of a key near its own as texts; of a count, of an angle, and of 0 now and then far off."""
+    if value.is_integer() and abs(value) < 20 and not unit:
+        return [f"{value + step:g}" for step in (0, 1, 2, -1)]
+    factors = (
+        random.uniform(0.95, 1.05, 4) if random.random() < 0.8 else 10 ** random.uniform(-2, 1, 4)
+    )
+    if value == 0:
+        factors, value = random.uniform(-1, 1, 4), 1.0
+    return [f"{value * factor:.9g} {unit}".strip() for factor in factors.tolist()]
+
+
+def has(case: Case, name: str) -> bool:
+    """Return whether a machine has a key value."""
+    try:
+        with np.errstate(all="ignore"):
+            return case[name] is not None
+    except KurbelError:
+        return False
+
+
+# one machine, written in two ways
+
+UNITS = {
+    **{
+        "m": ("mm", 1e3),
+        "mm": ("m", 1e-3),
+        "rpm": ("Hz", 1 / 60),
+        "kg": ("g", 1e3),
+        "bar": ("kPa", 1e2),
+    },
+    **{
+        "N": ("kN", 1e-3),
+        "N m": ("kN m", 1e-3),
+        "deg": ("rad", math.pi / 180),
+        "kg m2": ("t m2", 1e-3),
+    },
+    **{"N m/rad": ("kN m/rad", 1e-3), "kW": ("W", 1e3), "N/mm2": ("MPa", 1.0)},
+}
+"""Unit -> another one, and how many of it there are in one."""
+
+
+def in_other_units(value: Any) -> Any:
+    """Return the keys of a file with numbers in other units; a unit beside points stays."""
+    if isinstance(value, dict):
+        return {
+            key: in_other_units(inner) if key not in ("limits", "expect") else inner
+            for key, inner in value.items()
+        }
+    if isinstance(value, list):
+        return [in_other_units(inner) for inner in value]
+    number = NUMBER.fullmatch(value) if isinstance(value, str) else None
+    if number is None or number[2] not in UNITS:
+        return value
+    unit, factor = UNITS[number[2]]
+    return f"{float(number[1]) * factor!r} {unit}"
+
+
+def written_out(keys: Any) -> Any:
+    """Return the keys of a file in which no cylinder is `like` another one; None where there is none."""
+    cylinders = keys.get("cylinders")
+    if not isinstance(cylinders, list) or not any("like" in cylinder for cylinder in cylinders):
+        return None
+    by_name: dict[str, Any] = {}
+    written = []
+    for number, cylinder in enumerate(cylinders):
+        name = cylinder.get("name", f"cylinder {number + 1}")
+        model = by_name.get(cylinder.get("like"), {})
+        own = {key: value for key, value in cylinder.items() if key != "like"}
+        placed = {"crank_position", "bank_angle", "axial_position", "name"}
+        merged = {key: value for key, value in model.items() if key not in placed} | own
+        by_name[name] = merged
+        written.append(merged | {"name": name})
+    return keys | {"cylinders": written}
+
+
+class Repeated(yaml.SafeDumper):
+    """Writes what is in several places in each of them: machine files have no aliases."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+def text_of(keys: Any) -> str:
+    """Return the text of a machine file with these keys."""
+    return yaml.dump(keys, Dumper=Repeated, sort_keys=False)
+
+
+COMMANDS = (
+    "motion",
+    "forces",
+    "flywheel",
+    "balance",
+    "bearings",
+    "harmonics",
+    "stress",
+    "torsion",
+    "delivery",
+)
+
+
+def run(text: str, *arguments: str) -> Any:
+    """Return the result of a command on this text."""
+    return CliRunner().invoke(command_line, [*arguments, "-"], input=text)
+
+
+def figures_of(output: str) -> dict[str, list[Any]]:
+    """Return the columns and key values of a document, by where they are in it."""
+    document = json.loads(output)
+    found: dict[str, list[Any]] = {}
+
+    def gather(value: Any, place: str) -> None:
+        if isinstance(value, dict):
+            name = f"{place}/{value.get('id') or value.get('name') or ''}"
+            for key, inner in value.items():
+                if key in ("values", "value"):
+                    found[name] = inner if isinstance(inner, list) else [inner]
+                elif isinstance(inner, dict | list):
+                    gather(inner, f"{name}/{key}")
+        elif isinstance(value, list):
+            for number, inner in enumerate(value):
+                gather(inner, f"{place}[{number}]")
+
+    gather(document, "")
+    return found
+
+
+def differences(output: str, other: str, tolerance: float) -> Iterator[str]:
+    """Yield where two documents have other figures; of a column relative to its largest one."""
+    first, second = figures_of(output), figures_of(other)
+    for name in sorted(first.keys() ^ second.keys()):
+        yield f"{name} is in one of both only"
+    for name in first.keys() & second.keys():
+        values, others = first[name], second[name]
+        if "residual" in name or "phi" in name or "angle" in name:
+            continue
+        if len(values) != len(others):
+            yield f"{name}: {len(values)} and {len(others)} values"
+            continue
+        numbers = [abs(value) for value in values if isinstance(value, int | float)]
+        size = max(numbers, default=0.0)
+        for value, other_value in zip(values, others):
+            if isinstance(value, str) or isinstance(other_value, str):
+                continue
+            if (apart := distance(value, other_value, size)) > tolerance:
+                yield f"{name}: {value!r} and {other_value!r}: {apart:.1e}"
+                break
+
+
+def written_otherwise(text: str) -> Iterator[str]:
+    """Yield what differs between a file and the same in other words."""
+    keys = yaml.safe_load(text)
+    others = {"units": in_other_units(keys), "like": written_out(keys)}
+    case = {"name": "as set", "set": {"speed": "77 rpm"}}
+    texts = {name: text_of(other) for name, other in others.items() if other is not None}
+    for command in COMMANDS:
+        plain = run(text, command, "-f", "json")
+        yield from own_fault(plain, command)
+        for name, other_text in texts.items():
+            other = run(other_text, command, "-f", "json")
+            yield from own_fault(other, f"{name} {command}")
+            if (plain.exit_code == 0) != (other.exit_code == 0):
+                yield f"{name}: {command} ends with {plain.exit_code} and {other.exit_code}: {other.stderr[-200:]}"
+            elif plain.exit_code == 0:
+                yield from (
+                    f"{name}: {command} {line}"
+                    for line in differences(plain.stdout, other.stdout, 1e-9)
+                )
+        if "cases" in keys or plain.exit_code != 0:
+            continue
+        in_case = run(
+            yaml.safe_dump(keys | {"cases": [case]}, sort_keys=False),
+            command,
+            "-f",
+            "json",
+            "--case",
+            "as set",
+        )
+        as_set = run(text, command, "-f", "json", "--set", "speed=77 rpm")
+        if in_case.exit_code != as_set.exit_code:
+            yield f"case: {command} ends with {in_case.exit_code} and {as_set.exit_code}"
+        elif as_set.exit_code == 0:
+            yield from (
+                f"case: {command} {line}"
+                for line in differences(in_case.stdout, as_set.stdout, 0.0)
+            )
+        yield from csv_against_json(text, command, plain.stdout)
+
+
+def csv_against_json(text: str, command: str, document: str) -> Iterator[str]:
+    """Yield numbers of the csv of a command that its json has not."""
+    result = run(text, command, "-f", "csv")
+    yield from own_fault(result, f"{command} -f csv")
+    if result.exit_code != 0:
+        return
+    numbers = {
+        value
+        for values in figures_of(document).values()
+        for value in values
+        if isinstance(value, int | float)
+    }
+    for row in csv.DictReader(io.StringIO(result.stdout)):
+        # names may be numbers
+        for cell in (
+            cell for name, cell in row.items() if name not in ("cylinder", "part", "name")
+        ):
+            try:
+                number = float(cell)
+            except (TypeError, ValueError):
+                continue
+            if number not in numbers:
+                yield f"csv: {command} has {cell}, json has not"
+                return
+
+
+def own_fault(result: Any, what: str) -> Iterator[str]:
+    """Yield the fault where a command ended by one of its own."""
+    if result.exit_code not in (0, 1, 2, 3) or "Warning:" in result.stderr:
+        yield f"{what}: status {result.exit_code}: {result.stderr.strip()[-300:]}"
+
+
+def main() -> None:
+    """Print every difference with the machine, and how many there were."""
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 200
+    seed = int(sys.argv[2]) if len(sys.argv) > 2 else date.today().toordinal()
+    texts = {
+        f"random {number}": machine_file(np.random.default_rng([seed, number]))
+        for number in range(count)
+    }
+    shipped = [
+        *HOME.glob("configs/*.yaml"),
+        *HOME.glob("tests/examples/*.yaml"),
+        *HOME.glob("tests/machine_file/good/*"),
+    ]
+    texts |= {
+        path.stem: path.read_text("utf-8") for path in sorted(shipped) if path.stem != "answers"
+    }
+    found: Counter[str] = Counter()
+    for number, (name, text) in enumerate(texts.items()):
+        random = np.random.default_rng([seed, number])
+        try:
+            machine_of(text)
+        except KurbelError:
+            found["invalid"] += 1
+            continue
+        found["valid"] += 1
+        begin = time.process_time()
+        try:
+            for line in chain(batch_against_alone(text, random), written_otherwise(text)):
+                found["differences"] += 1
+                print(f"{name}: {line}", flush=True)
+        except Exception:
+            found["faults"] += 1
+            print(f"{name}: {traceback.format_exc(limit=-4)}", flush=True)
+        if (seconds := time.process_time() - begin) > SLOW:
+            print(f"{name}: {seconds:.0f} s", flush=True)
+    print(f"seed {seed}: {dict(found)}")
+
+
+if __name__ == "__main__":
+    main()
