@@ -187,7 +187,8 @@ def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
             values |= {f"{name}_long": abs(f) + abs(g), f"{name}_short": abs(abs(f) - abs(g))}
             # both circles meet in the middle of their directions, here from 0 to below 180 degrees
             middle = math.degrees(cmath.phase(f * g)) / 2
-            middle = middle + 180.0 if middle < -_NOTHING else max(middle, 0.0)
+            is_rounding = abs(middle) <= _NOTHING
+            middle = 0.0 if is_rounding else middle % 180.0
             values[f"{name}_direction"] = middle if f and g else None
             values |= {
                 f"{name}_forward_phase": _direction(f),

@@ -81,13 +81,20 @@ class BearingColumns(AtAngles):
         of=lambda columns, frame: columns.direction(frame),
     )
 
-    def __init__(self, phi: Array, frames: Frames) -> None:
+    def __init__(self, phi: Array, frames: Frames, largest: float) -> None:
         self.phi, self.frames, self.size = phi, frames, np.abs(next(iter(frames.values())))
+        self.largest = largest
 
     def direction(self, frame: str) -> Array | None:
-        """Return the direction of the load in degrees in a frame, None in one in which it is not known."""
+        """Return the direction of the load in degrees in a frame, None in one in which it is not known.
+
+        That of a load which is only rounding is 0°, as of none.
+        """
         load = self.frames.get(frame)
-        return None if load is None else _axial(np.degrees(np.angle(load)), _ON_AXIS)
+        if load is None:
+            return None
+        presses = self.size > _NO_LOAD * self.largest
+        return _axial(np.degrees(np.angle(np.where(presses, load, 0.0))), _ON_AXIS)
 
 
 class Bearing(Results):
@@ -155,7 +162,8 @@ class Bearing(Results):
         """Return the friction work in J per cycle of the machine, None without a coefficient of friction."""
 
     def _columns(self, phi: Array, within: Array) -> BearingColumns:
-        return BearingColumns(phi, self._frames(phi, within))
+        largest = float(np.abs(self._samples()[0]).max())
+        return BearingColumns(phi, self._frames(phi, within), largest)
 
     @cached_property
     def _cycle(self) -> tuple[Pieces, Array, ComplexArray]:
