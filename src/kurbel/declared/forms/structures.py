@@ -6,7 +6,7 @@ then `Maker` makes records of these.
 
 import functools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn, Union
 
@@ -393,6 +393,24 @@ class Listing(Form):
             name = completed[index].get("name")
             above.setdefault(name if isinstance(name, str) else f"{self.called} {index + 1}", index)
         return completed
+
+
+class Nested(Form):
+    """A list within an item of another list, of the same items: a branch in a shaft line.
+
+    outer: returns the form of the outer list, which does not exist yet when its items are declared. It has no parts of
+    its own, so that what walks over all keys meets those of the items once.
+    """
+
+    shape = list
+
+    def __init__(self, outer: Callable[[], Listing], written: str) -> None:
+        super().__init__("a list, each item after '- '", written=written)
+        self.outer = outer
+
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
+        """Read a list as the outer one."""
+        return self.outer().take(reading, value, path)
 
 
 class OneOf(Form):
