@@ -22,7 +22,7 @@ from kurbel.notes.warnings import Note, as_far_as_solved, bearing_warnings, mach
 from kurbel.report.delivery import delivery_left_out, delivery_warnings
 from kurbel.report.torsion import torsion_left_out, torsion_warnings
 from kurbel.solver.case import Case
-from kurbel.solver.shaft import shaft_obstacle
+from kurbel.solver.shaft import shaft_obstacle, strength_obstacle
 from kurbel.tables.tables import LeftOut, grouped, together
 
 _EVEN = 0.5
@@ -200,8 +200,8 @@ def _crankshaft_entries(case: Case) -> Iterator[CheckEntry]:
         yield CheckEntry("bearings", text, "warning", path)
     if not shaft_obstacle(machine):
         yield CheckEntry("computed", "loads on pins and main bearings")
-    if machine.strength_obstacle:
-        yield _left_out(f"strength: {machine.strength_obstacle}", path)
+    if strength_obstacle(machine):
+        yield _left_out(f"strength: {strength_obstacle(machine)}", path)
     else:
         yield from _computed(
             "forces on the bearings, stresses in pin and webs", strength_left_out(machine), path

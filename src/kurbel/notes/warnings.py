@@ -16,11 +16,13 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.machine.indicator import Card, CardLine
 from kurbel.machine.turning import Effort
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
+from kurbel.solver.shaft import strength_obstacle
 from kurbel.tables.tables import grouped, together
 from kurbel.traces.checks import doubt
 from kurbel.traces.pressure import TracePressure
@@ -519,8 +521,23 @@ def shells(case: Case) -> tuple[bool, str]:
     )
 
 
+def rods_on_pin(shaft: Crankshaft) -> str:
+    """Return the note on where several rods load one pin."""
+    if shaft.rod_spacing is None:
+        return (
+            "Rods on one pin are side by side, each on an equal part of its length, that of the cylinder which is "
+            "first in the file next to bearing A."
+        )
+    if shaft.rod_spacing == 0:
+        return "Rods on one pin all load it in its middle, as fork and blade."
+    return (
+        f"Rods on one pin are {show(shaft.rod_spacing, 'length')} apart, that of the cylinder which is first in the "
+        "file next to bearing A."
+    )
+
+
 def _strength_warnings(case: Case) -> Iterator[str]:
-    if not case.machine.strength_obstacle:
+    if not strength_obstacle(case.machine):
         cool, verdict = shells(case)
         if not cool:
             yield verdict
