@@ -37,6 +37,10 @@ _KEYS = {
 """Kind of an item -> the keys that only such an item has."""
 
 
+def _shaft() -> Listing:
+    return SHAFT
+
+
 class ShaftPart(Record):
     """One item of the list: a mass, a piece of shaft, or a pair of gears; what is not given is None.
 
@@ -119,7 +123,7 @@ class ShaftPart(Record):
         above=0,
     )
     branch: tuple[ShaftPart, ...] | None = field(
-        Nested(lambda: SHAFT, "a list of such items"),
+        Nested(_shaft, "a list of such items"),
         "A side line that begins at the mass before it in the list, with a shaft segment or a gear, and ends with a "
         "mass or `ground`; the list goes on behind it from that mass",
     )
@@ -176,7 +180,7 @@ class ShaftPart(Record):
         return self.length is not None and self.stiffness is None and self.density != 0
 
 
-SHAFT = Listing(
+SHAFT: Listing = Listing(
     OneOf(
         Choice(
             (GROUND, FLYWHEEL),
@@ -285,8 +289,8 @@ def _crank_faults(
     absent = [name for name in cylinders if name not in seen]
     are_all_cylinders = not seen - set(cylinders)
     if is_complete and absent and are_all_cylinders:
-        item = f"give its crank an item '{{cylinder: {absent[0]}}}'"
-        faults.append(Fault((), f"{', '.join(absent)} is missing in it; {item}"))
+        remedy = f"give its crank an item '{{cylinder: {absent[0]}}}'"
+        faults.append(Fault((), f"{', '.join(absent)} is missing in it; {remedy}"))
     return faults
 
 
@@ -333,8 +337,8 @@ def _of_order(
             before = part.kind
 
     kinds = [part.kind for _, part in along]
-    if is_branch and not along:
-        yield True, path, "the branch has no items"
+    if is_branch:
+        yield not parts, path, "the branch has no items"
     following = [*kinds[1:], ""]
     for number, (here, part) in enumerate(along):
         before = kinds[number - 1] if number else origin
@@ -378,7 +382,9 @@ def _of_whole_line(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str
         both = "a shaft that is held at both ends does not turn a crank; leave one 'ground' out"
         yield len(grounds) > 1, cranks[0].path, both
     single = "a single mass cannot vibrate; give a second one and the shaft segment between them"
-    yield kinds.count("mass") + min(len(grounds), 1) < 2, (), single
+    is_alone = kinds.count("mass") + min(len(grounds), 1) < 2
+    is_geared_only = "gear" in kinds and SEGMENT not in kinds
+    yield is_alone or is_geared_only, (), single
     if len(loads) > 1:
         yield True, (*loads[1].path, "load"), "one mass takes the load; leave one of them out"
     for crank in cranks:

@@ -9,7 +9,15 @@ from collections import Counter
 from collections.abc import Mapping
 
 from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, FigureForm, Figures
-from kurbel.declared.forms.structures import Inline, Keyed, Listing, Nested, OneOf, RecordForm, Variant
+from kurbel.declared.forms.structures import (
+    Inline,
+    Keyed,
+    Listing,
+    Nested,
+    OneOf,
+    RecordForm,
+    Variant,
+)
 from kurbel.declared.forms.values import Form, NumberForm, Schema, Text
 from kurbel.declared.keys import required
 from kurbel.declared.numerals import RATIO, WRITTEN

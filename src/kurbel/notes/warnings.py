@@ -523,17 +523,12 @@ def shells(case: Case) -> tuple[bool, str]:
 
 def rods_on_pin(shaft: Crankshaft) -> str:
     """Return the note on where several rods load one pin."""
+    first = "that of the cylinder which is first in the file farthest from bearing B"
     if shaft.rod_spacing is None:
-        return (
-            "Rods on one pin are side by side, each on an equal part of its length, that of the cylinder which is "
-            "first in the file next to bearing A."
-        )
+        return f"Rods on one pin are side by side, each on an equal part of its length, {first}."
     if shaft.rod_spacing == 0:
         return "Rods on one pin all load it in its middle, as fork and blade."
-    return (
-        f"Rods on one pin are {show(shaft.rod_spacing, 'length')} apart, that of the cylinder which is first in the "
-        "file next to bearing A."
-    )
+    return f"Rods on one pin are {show(shaft.rod_spacing, 'length')} apart, {first}."
 
 
 def _strength_warnings(case: Case) -> Iterator[str]:

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
+from kurbel.machine.shaft_line import GROUNDED, ShaftLine
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
 from kurbel.pictures.picture_source import CurveFormula, Source, curve, level
 from kurbel.solver.chapters.bearings import BearingColumns
@@ -197,15 +198,34 @@ def shaft_modes(source: Source) -> Iterator[Panel]:
     """Angles by which the masses of the shaft line turn in its first natural vibrations."""
     found, curves = source.results, list[Curve]()
     names = tuple(mass.name for mass in found.line.masses)
-    places = np.arange(float(len(names)))
+    places = _along(found.line)
+    is_gap = np.isnan(places)
+    masses = np.where(is_gap, 0, places).astype(int)
     for mode, frequency in _frequencies(source):
         angles = np.asarray(found.holzer(mode).angles, dtype=float)
-        curves.append(
-            Curve(Words(f"{mode}: {frequency:.4g} Hz"), places, angles / np.abs(angles).max())
-        )
+        shape = angles / np.abs(angles).max()
+        upright = np.where(is_gap, math.nan, shape[masses])
+        curves.append(Curve(Words(f"{mode}: {frequency:.4g} Hz"), places, upright))
     if curves:
         up = Axis(Words("θ", words="angle over the largest"))
-        yield Panel(Axis(Words(""), names=names), up, (*curves, level(places)))
+        rest = level(np.arange(float(len(names))))
+        yield Panel(Axis(Words(""), names=names), up, (*curves, rest))
+
+
+def _along(line: ShaftLine) -> Array:
+    """Return the numbers of the masses along a shaft line, with a gap before a branch or behind it.
+
+    What follows a gap begins at the mass where it leaves the line.
+    """
+    places = [0.0]
+    for segment in line.segments:
+        before, behind = segment.before, segment.behind
+        if GROUNDED in (before, behind):
+            continue
+        if before != places[-1]:
+            places += [math.nan, math.nan, before]
+        places.append(behind)
+    return np.array(places)
 
 
 def _frequencies(source: Source) -> list[tuple[int, float]]:
