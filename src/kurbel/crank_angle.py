@@ -9,6 +9,9 @@ from kurbel.arrays import Array, Number
 from kurbel.numerics.arithmetic import magnitude, where
 from kurbel.numerics.pieces import Pieces
 
+CYCLES = {"two-stroke": 1, "four-stroke": 2}
+"""Working cycle -> revolutions of the shaft."""
+
 
 class CrankAngle(NamedTuple):
     """A crank angle, or an array of them, with its sine and cosine.

@@ -38,6 +38,16 @@ def test_ruler_and_compasses_give_what_the_solver_computes(name: str) -> None:
         x, c = float(state.x[number]), float(state.c[number])
         assert (way["A"] - way["x"]).real == pytest.approx(x, abs=1e-12)
         assert (way["E"] - way["C"]).real == pytest.approx(x, abs=1e-12)
+        # half a turn later the way from the other dead centre: outward the longer one (R p. 602)
+        later = case.cylinders[0].at([ANGLES[number] + 180.0])
+        back = case.cylinders[0].motion.stroke - float(later.x[0])
+        lengths = {
+            mark.figure.name.symbol: mark.figure.value for mark in picture.panels[3 * number].marks
+        }
+        assert way["D"] == pytest.approx(-way["C"], abs=1e-12)
+        assert lengths["D"] == pytest.approx(back, abs=1e-12)
+        if name == "waterworks" and x > 1e-9:
+            assert lengths["x"] >= lengths["D"] * (1 - 1e-12)
         figures = {
             mark.figure.name.symbol: mark.figure.value
             for mark in picture.panels[3 * number + 1].marks
@@ -102,7 +112,8 @@ def test_the_pump_is_laid_over_the_steam() -> None:
         for panel, pump in zip(picture.panels, (3490.0, -3710.0)):
             assert curve_of(panel, "−P_driven").y == pytest.approx(pump, rel=1e-3)
         out = picture.panels[0]
-        x, steam = curve_of(out, "η P_driving").x, curve_of(out, "η P_driving").y
+        symbol = "P_driving" if eta == 1 else "η P_driving"
+        x, steam = curve_of(out, symbol).x, curve_of(out, symbol).y
         rest = np.interp(x, curve_of(out, "−P_driven − P_b").x, curve_of(out, "−P_driven − P_b").y)
         P = convert(
             np.asarray(
@@ -143,3 +154,26 @@ def test_cranks_and_sides_add_up_to_the_turning_effort(efficiency: str) -> None:
         case.flywheel.T_max.degrees,
         case.flywheel.T_min.degrees,
     ]
+
+
+def test_reversal_of_the_piston_force_and_zero_of_the_acceleration_are_marked() -> None:
+    """R Abb. 1055 has J where the force reverses, Abb. 1050 the point where b is 0 and c largest."""
+    case = case_of("waterworks")
+    options = PictureOptions(system="si")
+    (over_stroke,) = pictures(case, ("piston-force-way",), options)
+    reversals = [
+        m.figure.at_deg for p in over_stroke.panels for m in p.marks if m.figure.name.symbol == "J"
+    ]
+    assert reversals == pytest.approx(case.cylinders[0].phi_reversal)
+    (motion,) = pictures(case, ("motion-way",), options)
+    (zero,) = [mark for mark in motion.panels[1].marks if mark.figure.name.symbol == "b = 0"]
+    assert zero.figure.at_deg == pytest.approx(case["c_max"].degrees, abs=1e-9)
+    assert zero.y == 0.0
+
+
+@pytest.mark.parametrize(("efficiency", "symbol"), [("1", "P_driving"), ("0.9", "η P_driving")])
+def test_efficiency_is_in_a_label_only_where_the_file_has_one(efficiency: str, symbol: str) -> None:
+    case = case_of("waterworks")
+    case = Case(replace(case.machine, efficiency=float(efficiency)))
+    (picture,) = pictures(case, ("piston-force-crank",), PictureOptions(system="si"))
+    assert picture.panels[0].curves[0].name.symbol == symbol

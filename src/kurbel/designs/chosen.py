@@ -17,8 +17,7 @@ from kurbel.designs.answers import Cell, Design, Head
 from kurbel.designs.binding import INFINITE
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
-from kurbel.quantities import every_quantity
-from kurbel.quantity import called
+from kurbel.quantities import KEY_VALUES
 
 _RELATIONS: dict[str, Callable[..., bool]] = {
     "<=": operator.le,
@@ -87,11 +86,10 @@ def place_of(name: str, heads: Sequence[Head], option: str) -> int:
     """Return which column of single values a name or a printed symbol is; raises UsageError."""
     ids = tuple(head.id for head in heads)
     owner, _, own = name.rpartition(".")
-    meant = (
-        name,
-        *(f"{owner}.{id}".lstrip(".") for id in called(own, every_quantity().all_key_values)),
-    )
-    place = next((ids.index(one) for one in meant if one in ids), None)
+    meant = [name]
+    if name not in ids:  # a symbol
+        meant += (f"{owner}.{id}".lstrip(".") for id in KEY_VALUES.ids_of(own))
+    place = next((ids.index(column) for column in meant if column in ids), None)
     if place is None:
         raise UsageError(
             f"{option}: no column '{text_in_one_line(name)}'{did_you_mean(name, ids)} (there are {', '.join(ids)})"

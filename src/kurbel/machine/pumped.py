@@ -83,6 +83,7 @@ class Vessel(Record):
         least=0.5,
         most=2,
         absent="1, isothermal",
+        example="1.2",
     )
 
     def rules(self) -> Iterator[Rule]:
@@ -108,6 +109,7 @@ class Pipe(Record):
         least=0,
         most=1,
         absent="0, no friction",
+        example="0.03",
     )
     vessel: Vessel | None = field(Vessel, "Air vessel between pipe and pump", absent="none")
 
@@ -121,6 +123,7 @@ class Pump(Record):
         default=0.0,
         least=0,
         below=1,
+        example="0.03",
     )
     liquid: Liquid = field(Liquid, "What is pumped", default=Liquid(), absent="water")
     suction_pipe: Pipe | None = field(Pipe, "Pipe to the pump", absent="suction lift left out")

@@ -4,12 +4,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby, product
 
+from kurbel.crank_angle import CYCLES
 from kurbel.declared.forms.structures import RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER
 from kurbel.declared.record import Record, Rule, field
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
-from kurbel.machine.cylinder import CYCLES, Cylinder
+from kurbel.machine.cylinder import Cylinder
 
 
 class EqualCylinders(Record):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from kurbel.declared.forms.structures import Listing, Nested, OneOf, RecordForm
 from kurbel.declared.forms.values import TEXT, Choice
@@ -38,7 +38,8 @@ _KEYS = {
 
 
 def _shaft() -> Listing:
-    return SHAFT
+    """Return the form of a list of items, which a branch has, too."""
+    return Listing(OneOf(Choice((GROUND, FLYWHEEL)), RecordForm(ShaftPart)))
 
 
 class ShaftPart(Record):
@@ -98,6 +99,7 @@ class ShaftPart(Record):
         "ρ",
         least=0,
         absent="7850 kg/m3, steel",
+        example="7850 kg/m3",
         needs="length",
     )
     loss_factor: float | None = field(
@@ -107,6 +109,7 @@ class ShaftPart(Record):
         least=0,
         most=2,
         absent="0",
+        example="0.01",
     )
     damping: float | None = field(
         "damping",
@@ -121,11 +124,13 @@ class ShaftPart(Record):
         "Speed ratio: speed after the gear over speed before it, in the order of the list",
         "u",
         above=0,
+        example="0.25",
     )
     branch: tuple[ShaftPart, ...] | None = field(
         Nested(_shaft, "a list of such items"),
         "A side line that begins at the mass before it in the list, with a shaft segment or a gear, and ends with a "
         "mass or `ground`; the list goes on behind it from that mass",
+        gives=lambda values: {"branch": tuple(_of_words(values["branch"]))},
     )
 
     word: str = ""
@@ -178,18 +183,6 @@ class ShaftPart(Record):
     def has_inertia(self) -> bool:
         """Whether it is a shaft segment that has an inertia of its own."""
         return self.length is not None and self.stiffness is None and self.density != 0
-
-
-SHAFT: Listing = Listing(
-    OneOf(
-        Choice(
-            (GROUND, FLYWHEEL),
-            means={GROUND: ShaftPart(word=GROUND), FLYWHEEL: ShaftPart(word=FLYWHEEL)},
-        ),
-        RecordForm(ShaftPart),
-    )
-)
-"""The form of a shaft line."""
 
 
 class ShaftSection(NamedTuple):
@@ -256,11 +249,19 @@ class ShaftLine:
         return any(GROUNDED in (segment.before, segment.behind) for segment in self.segments)
 
 
-def shaft_faults(parts: Sequence[ShaftPart | Reported], cylinders: Sequence[str]) -> list[Fault]:
+def _of_words(parts: Sequence[Any]) -> list[Any]:
+    """Return the items with a part in place of each word, `ground` or `flywheel`."""
+    return [ShaftPart(word=part) if isinstance(part, str) else part for part in parts]
+
+
+def shaft_faults(
+    items: Sequence[ShaftPart | str | Reported], cylinders: Sequence[str]
+) -> list[Fault]:
     """Return what is wrong with a list.
 
     If parts could not be read, only the faults of single other parts.
     """
+    parts = _of_words(items)
     read = [part for part in parts if part is not REFUSED]
     faults = _crank_faults(parts, cylinders, is_complete=len(read) == len(parts))
     if len(read) == len(parts):
@@ -395,13 +396,13 @@ def _of_whole_line(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str
             return
 
 
-def line_of(parts: Sequence[ShaftPart], cylinders: Sequence[str] = ()) -> ShaftLine:
+def line_of(given: Sequence[ShaftPart | str], cylinders: Sequence[str] = ()) -> ShaftLine:
     """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError.
 
     All is referred to the shaft of the cranks: inertia, damping and stiffness by the square of the ratio of speeds.
     """
-    refuse(*shaft_faults(parts, cylinders))
-    return _Assembly(parts).line
+    refuse(*shaft_faults(given, cylinders))
+    return _Assembly(_of_words(given)).line
 
 
 class _Assembly:

@@ -16,16 +16,10 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.crankshaft import Crankshaft
-from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.machine.indicator import Card, CardLine
-from kurbel.machine.turning import Effort
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
-from kurbel.solver.shaft import strength_obstacle
 from kurbel.tables.tables import grouped, together
-from kurbel.traces.checks import doubt
-from kurbel.traces.pressure import TracePressure
 
 
 class Note(NamedTuple):
@@ -48,7 +42,7 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
 
     for cylinder in machine.cylinders:
         add(_card_warnings(cylinder), cylinder.name)
-    if isinstance(machine.effort, Effort):
+    if machine.effort:
         add(f"effort: {text}" for text in machine.effort.notes)
     add(_speed_warnings(machine))
     add(_fluctuation_warnings(machine), command="flywheel")
@@ -172,19 +166,9 @@ def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
             place = f"{piston.name}, {end.replace('_', ' ')}"
-            yield from (
-                f"{place}: {text}"
-                for text in (() if isinstance(chamber, Compressor) else chamber.notes)
-            )
-            exponents = (
-                {chamber.exponent}
-                if isinstance(chamber, (Steam, Compressor, Otto, Diesel))
-                else set()
-            )
-            if isinstance(chamber, (Compressor, Otto, Diesel)) and chamber.expansion_exponent:
-                exponents.add(chamber.expansion_exponent)
+            yield from (f"{place}: {text}" for text in chamber.notes)
             least, most = _EXPONENTS
-            for value in exponents:
+            for value in set(chamber.exponents):
                 if not least <= value <= most:
                     yield f"{place}: an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
         asymmetries = [
@@ -228,7 +212,9 @@ def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
     """Yield the one warning on each trace of a cylinder, if any."""
     for gas in forces.drive.gas:
         for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
-            if isinstance(pressure, TracePressure):
+            if pressure and pressure.traced:
+                from kurbel.traces.checks import doubt
+
                 text = doubt(pressure.trace, pressure.setting, pressure.each)
                 if text:
                     yield f"{gas.piston.name}, {end}: {text}"
@@ -375,9 +361,7 @@ def _kind_of(forces: CylinderForces) -> str:
         for one in pistons
         for _ in one.chambers
     ]
-    if any(
-        isinstance(one, Steam) or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)
-    ):
+    if any(one.by_steam or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)):
         return "steam engines"
     if (forces.work or 0.0) < 0:
         return (
@@ -386,9 +370,7 @@ def _kind_of(forces: CylinderForces) -> str:
             else ""
         )
     crosshead = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
-    burns = any(
-        isinstance(chamber, (Otto, Diesel)) or forces.drive.cycle > 360 for chamber in chambers
-    )
+    burns = any(chamber.burns or forces.drive.cycle > 360 for chamber in chambers)
     return "gas engines with a crosshead" if crosshead and burns else ""
 
 
@@ -521,17 +503,21 @@ def shells(case: Case) -> tuple[bool, str]:
     )
 
 
-def rods_on_pin(shaft: Crankshaft) -> str:
-    """Return the note on where several rods load one pin."""
+def rods_on_pin(spacing: float | None) -> str:
+    """Return the note on where several rods load one pin; spacing: `rod_spacing` in m."""
     first = "that of the cylinder which is first in the file farthest from bearing B"
-    if shaft.rod_spacing is None:
+    if spacing is None:
         return f"Rods on one pin are side by side, each on an equal part of its length, {first}."
-    if shaft.rod_spacing == 0:
+    if spacing == 0:
         return "Rods on one pin all load it in its middle, as fork and blade."
-    return f"Rods on one pin are {show(shaft.rod_spacing, 'length')} apart, {first}."
+    return f"Rods on one pin are {show(spacing, 'length')} apart, {first}."
 
 
 def _strength_warnings(case: Case) -> Iterator[str]:
+    if case.machine.strength_obstacle:
+        return
+    from kurbel.solver.shaft import strength_obstacle
+
     if not strength_obstacle(case.machine):
         cool, verdict = shells(case)
         if not cool:

@@ -12,8 +12,8 @@ import numpy as np
 from kurbel.checks.limits import compared_entries, name_of
 from kurbel.declared.unit_systems import convert, show, shown_unit
 from kurbel.errors import KurbelError
-from kurbel.machine import Machine, firings
-from kurbel.machine.ideal_cards import Steam
+from kurbel.machine import Machine
+from kurbel.machine.firing import firings
 from kurbel.machine.several import intervals
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import Extreme, number_of
@@ -122,7 +122,7 @@ def machine_kind(case: Case) -> str:
     if firings(machine):
         return "engine"
     drives = any(cylinder.drive.drives for cylinder in case.cylinders)
-    if drives or any(isinstance(one, Steam) for one in chambers):
+    if drives or any(chamber.by_steam for chamber in chambers):
         return "steam engine"
     try:
         return "pump" if case.delivery.pump else "compressor"

@@ -92,17 +92,32 @@ def _at(degrees: float) -> str:
 
 
 def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
-    """Return x as AG, cut off on the stroke line by an arc about the crosshead, and as CE up to the arc through A."""
+    """Return x as AG, cut off on the stroke line by an arc about the crosshead, and as CE up to the arc through A.
+
+    D is the pin half a turn later, at the same angle on the return stroke: its way back from B is the shorter one.
+    """
     pin, head, sin, cos = _straight(mechanism, angle)
     length, way, psi = mechanism.rod, float(mechanism.coordinate(angle)), math.atan2(sin, cos)
     arc = length * np.exp(1j * np.linspace(math.pi - psi, math.pi, 25))
     dead = head + way  # the crosshead at its inner dead centre
     start, above = complex(-mechanism.crank, mechanism.offset), dead + complex(arc[0])
+
+    # the opposite pin and its crosshead; B is the pin at the outer dead centre, laid off along the stroke line
+    later = CrankAngle.of(np.asarray(float(angle.degrees) + 180.0))
+    opposite, head_of_opposite, _, _ = _straight(mechanism, later)
+    outer = dead - mechanism.stroke - length
+    way_back = float(mechanism.stroke - mechanism.coordinate(later))
     return _panel(
         "length",
-        {"A": dead - length, "C": pin, "E": above, "x": head - length},
-        {"x": way},
-        faint=(mechanism.crank * AROUND, (start, dead), head + arc, dead + arc),
+        {"A": dead - length, "B": outer, "C": pin, "D": opposite, "E": above, "x": head - length},
+        {"x": way, "D": way_back},
+        faint=(
+            mechanism.crank * AROUND,
+            (start, dead),
+            head + arc,
+            dead + arc,
+            (opposite, head_of_opposite),
+        ),
         member=[(0j, pin, head)],
         line=[(dead - length, head - length), (pin, above)],
         joint=[(0j, pin, head)],

@@ -21,6 +21,7 @@ from kurbel.render.text_tables import (
     place_table,
     sheets,
 )
+from kurbel.tables.sources import legend_of
 from kurbel.tables.tables import Report, shown_once
 
 _ON_PAPER = 9
@@ -236,6 +237,8 @@ def document(report: Report, out: Writer) -> Iterator[str]:
                 yield from written([key_value_table(caption, key_values, look)], out)
         yield from listed(f"Left out{of}", [f"{one.what}: {one.why}" for one in part.left_out], out)
         yield from listed(f"Warnings{of}", part.warnings, out)
+    if books := legend_of(report):
+        yield out.paragraph.format(out.prose(books))
 
 
 def listed(title: str, sentences: Collection[str], out: Writer) -> Iterator[str]:

@@ -27,6 +27,7 @@ from kurbel.render.text_tables import (
     place_table,
     sheets,
 )
+from kurbel.tables.sources import legend_of
 from kurbel.tables.tables import KeyValue, Report, first_selection, shown_once
 
 _NINE = 9  # angles to a block: the book breaks after 80°
@@ -36,8 +37,8 @@ _GAP, _ROW_GAP = 2, 3
 _LONGEST = 16  # of a number, or two angles; a longer list gets lines of its own
 
 
-def page_lines(report: Report, look: Look) -> Iterator[Line]:
-    """Yield the lines of the whole page."""
+def page_lines(report: Report, look: Look, has_legend: bool = True) -> Iterator[Line]:
+    """Yield the lines of the whole page; has_legend: with the books of its references."""
     report = shown_once(report)
     yield from paragraph(look.text(report.title), look.width, "title")
     for text in report.head:
@@ -84,6 +85,9 @@ def page_lines(report: Report, look: Look) -> Iterator[Line]:
         if part.warnings:
             yield from (BLANK, line(f"Warnings{of}", "name"))
             yield from (one for warning in part.warnings for one in sentence("  ", warning, look))
+    books = legend_of(report)
+    if books and has_legend:
+        yield from sentence("", books, look)
 
 
 def fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line]:
@@ -93,7 +97,9 @@ def fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line
     if len(begin) < most:
         return chain(begin, lines)
     across = max(((look.width or 80) - _SIDE) // _CELL, 4)
-    return page_lines(first_selection(report, first, across, rows=most // 6), look)
+    return page_lines(
+        first_selection(report, first, across, rows=most // 6), look, has_legend=False
+    )
 
 
 # a line for each row

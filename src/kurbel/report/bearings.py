@@ -58,7 +58,7 @@ def _bearing_notes(case: Case) -> Iterator[str]:
             "and 'crankshaft' as the throw of every cylinder."
         )
     if line and any(len(throw.cylinders) > 1 for throw in line.throws):
-        yield rods_on_pin(line.shaft)
+        yield rods_on_pin(line.shaft.rod_spacing)
     if any(cylinder.masses and cylinder.masses.undivided for cylinder in machine.cylinders):
         yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
 

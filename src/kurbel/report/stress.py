@@ -132,7 +132,7 @@ def _stress_notes(case: Case) -> Iterator[str]:
         )
         yield "The torque is that of uniform rotation; compare it with the vibratory torque of 'kurbel torsion'."
     if any(len(throw.rods) > 1 for throw in strength.throws):
-        yield f"{rods_on_pin(strength.shaft)} In the dead centre each rod is loaded by itself."
+        yield f"{rods_on_pin(strength.shaft.rod_spacing)} In the dead centre each rod is loaded by itself."
     if strength.C_rod:
         yield (
             "The part of the connecting rod that turns with the crank pin pulls it outward with C_r: pin and "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cache, cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,12 +28,27 @@ from kurbel.solver.figures import (
     result_rows,
 )
 from kurbel.solver.gas import PistonGas
-from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
 from kurbel.solver.newton import residual
 from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
-from kurbel.solver.valve import ValveGear
+
+if TYPE_CHECKING:
+    from kurbel.solver.indicated import Indicated
+    from kurbel.solver.valve import ValveGear
+
+
+def _indicated() -> type[Indicated]:
+    from kurbel.solver.indicated import Indicated
+
+    return Indicated
+
+
+def _valve_gear() -> type[ValveGear]:
+    from kurbel.solver.valve import ValveGear
+
+    return ValveGear
+
 
 SLIDING = {
     "crosshead": ("K", "at the crosshead"),
@@ -162,7 +177,9 @@ class CylinderForces(SampledCylinder, Results):
         """The rows that a machine with this mechanism may have, its pressures counted as in the machine file."""
         mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
         of_ram = not cylinder.pistons and bool(cylinder.ram_force or mechanism.quick_return)
-        return _rows(mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, bool(gas and gas.absolute))
+        return _rows(
+            mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, bool(gas and gas.absolute), self.closed
+        )
 
     @property
     def _of(self) -> str:
@@ -186,11 +203,11 @@ class CylinderForces(SampledCylinder, Results):
             else Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
         )
 
-    @part(ValveGear)
+    @part(_valve_gear, there=lambda forces: forces.drive.cylinder.valve is not None)
     def valve_gear(self) -> ValveGear | None:
         """What the valve does."""
         cylinder = self.drive.cylinder
-        return ValveGear(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
+        return _valve_gear()(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
 
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")
@@ -270,10 +287,18 @@ class CylinderForces(SampledCylinder, Results):
     power = value("N_i", "power", "Indicated power")
     mean_pressure = value("p_i", "pressure", "Mean indicated pressure of the cylinder's own piston")
 
-    @part(Indicated)
+    V_clearance = value(
+        "V_c", "volume", "Clearance volume of the head-end chamber", after="mean_pressure_exchange"
+    )
+
+    @part(
+        _indicated,
+        there=lambda forces: bool(forces.drive.own_gas and forces.drive.own_gas.has_trace),
+    )
     def indicated(self) -> Indicated | None:
         """Key values of the traces of the cylinder's own piston."""
-        return Indicated(self.drive.own_gas) if self.drive.own_gas else None
+        gas = self.drive.own_gas
+        return _indicated()(gas) if gas and gas.has_trace else None
 
     @part(Brake)
     def brake(self) -> Brake | None:
@@ -386,6 +411,9 @@ class CylinderForces(SampledCylinder, Results):
             highest = largest(*(end.highest for end in (gas.head, gas.crank) if end))
             found["p_max"] = Extreme(highest.value + gas.base, highest.degrees)
             found["mean_pressure"] = gas.work / gas.swept_volume
+            volume = gas.clearance_volumes[0] if gas.head else 0.0
+            if some(volume != 0):  # of many machines nan where it is not known
+                found["V_clearance"] = where(volume == 0, math.nan, volume)
         if drive.gas:
             each, speed = [gas.work for gas in drive.gas], drive.machine.speed
             found["work"] = work = total(*(one for gas in drive.gas for one in gas.works))
@@ -567,10 +595,14 @@ class CylinderForces(SampledCylinder, Results):
 
 @cache
 def _rows(
-    offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: bool, absolute: bool
+    offers: tuple[Offer, ...],
+    key_offers: tuple[KeyOffer, ...],
+    of_ram: bool,
+    absolute: bool,
+    closed: frozenset[str],
 ) -> Rows:
     """Return the rows of cylinders with these quantities of mechanisms: of a ram without piston, or absolute."""
-    known = result_rows(CylinderForces, offers, key_offers)
+    known = result_rows(CylinderForces, offers, key_offers, closed)
     return (
         known.changed(Quantity.of_ram if of_ram else Quantity.absolute)
         if of_ram or absolute

@@ -32,7 +32,6 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.numerics.arithmetic import some, total
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
@@ -40,7 +39,7 @@ from kurbel.quantity import QuantityRow, column, value
 from kurbel.solver.chambers import Chambers
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
-from kurbel.solver.shaft import Vector
+from kurbel.solver.vector import Vector
 
 
 class FrictionMoments(NamedTuple):
@@ -387,11 +386,12 @@ class State(Chambers):
     @cached_property
     def drag_of_guides(self) -> Number:
         """Friction 2 f_g |P R sin φ|/l_g in N of the guides of a Scotch yoke, magnitude; 0 for another mechanism."""
-        yoke, (_, f) = self.mechanism, self.drive.yoke_friction
-        if not isinstance(yoke, ScotchYoke) or not some(f != 0):
+        _, f = self.drive.yoke_friction
+        if not some(f != 0):
             return 0.0
-        pair = yoke.guide_pair_factor(self.angle)
-        assert pair is not None
+        pair = self.mechanism.guide_pair_factor(self.angle)
+        if pair is None:
+            return 0.0
         return np.abs(self.after_steady_friction * pair) * (2 * f)
 
     @column("N", "force", extremes=("forces",), called="guide force", peak=True)

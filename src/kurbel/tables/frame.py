@@ -629,8 +629,11 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         raise UsageError(f"--where: {error}") from None
 
     def angles(subject: Subject) -> Sequence[float]:
-        own, every = subject.lists.columns(command), every_quantity().columns(command)
-        ids = called(name, own.values()) or called(name, every.values())
+        own = subject.lists.columns(command)
+        ids = called(name, own.values())
+        if not ids:
+            every = every_quantity().columns(command)
+            ids = called(name, every.values())
         if not ids:
             near = did_you_mean(name, tuple(every))
             raise UsageError(f"--where: '{name}' is no column{near} (known: {', '.join(every)})")

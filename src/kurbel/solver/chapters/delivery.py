@@ -511,7 +511,7 @@ class MachineDelivery:
             if not piston.pumps
             and (works or isinstance(piston.gas.piston.chambers.get(end), Compressor))
         ]
-        self.stages = _staged(ends)
+        self.stages: tuple[CompressorStage, ...] = _staged(ends)
         if not (self._pumps or self.stages):
             raise UsageError(
                 f"{self.machine.name} delivers nothing: no piston is driven by the shaft; a pump has a 'constant' "

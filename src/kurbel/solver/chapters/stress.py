@@ -48,9 +48,10 @@ from kurbel.quantity import Heading, ValuesById, value, values_for
 from kurbel.solver.effort import position
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import Force, FreeBody, SupportedShaft, flywheel_weight, strength_obstacle
+from kurbel.solver.shaft import FreeBody, SupportedShaft, flywheel_weight, strength_obstacle
 from kurbel.solver.state import State
 from kurbel.solver.throw_loads import pin_load, resampled, state_at
+from kurbel.solver.vector import Force
 
 PARTS = {
     "pin": ("pin", "the crank pin"),
