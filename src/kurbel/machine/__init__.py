@@ -248,8 +248,8 @@ class Machine(Record):
     )
     shaft: ShaftLine | None = field(
         Listing(OneOf(Choice(("ground", "flywheel")), RecordForm(_shaft_part))),
-        "Shaft line for torsional vibration, in order along the shaft: masses, shaft segments between them, one pair "
-        "of gears, `flywheel` (that of the machine) and `ground` (a fixed end)",
+        "Shaft line for torsional vibration, in order along the shaft: masses, shaft segments between them, gears, "
+        "branches, `flywheel` (that of the machine) and `ground` (a fixed end)",
         absent="no torsional vibration",
         also=("shaft_line", "torsion"),
     )

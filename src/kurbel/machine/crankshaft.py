@@ -42,8 +42,8 @@ class Crankshaft(Record):
     pin_length: float = field("length", "Length of the crank pin", "l_z", above=0)
     rod_spacing: float | None = field(
         "length",
-        "Distance of the middles of neighbouring rods on one crank pin, of which that of the cylinder that is first in "
-        "the file is next to bearing A; 0 mm: fork and blade",
+        "Distance of the middles of neighbouring rods on one crank pin, of which that of the "
+        "cylinder that is first in the file is farthest from bearing B; 0 mm: fork and blade",
         "s",
         least=0,
         absent="pin_length over the number of rods on the pin",

@@ -1,16 +1,18 @@
-"""The shaft line: masses, shaft segments between them, one reduction of gears, and a fixed end if there is one.
+"""The shaft line: masses, shaft segments between them, gears, branches, and fixed ends.
 
-In a machine file it is a list that is read along the shaft; it becomes a `ShaftLine`, all of it referred to the shaft
-of the cranks.
+In a machine file it is a list that is read along the shaft, with a list in it for each branch; it becomes a
+`ShaftLine`, all of it referred to the shaft of the cranks.
 """
+
+from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from kurbel.declared.forms.structures import Listing, OneOf
-from kurbel.declared.forms.values import TEXT
+from kurbel.declared.forms.structures import Listing, Nested, OneOf, RecordForm
+from kurbel.declared.forms.values import TEXT, Choice
 from kurbel.declared.reading import REFUSED, Reported
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import Fault, Path, refuse
@@ -20,16 +22,24 @@ STEEL, STEEL_DENSITY = 82e9, 7850.0
 """Shear modulus in Pa, and density in kg/m³, of steel."""
 GROUNDED = -1
 """In place of the number of a mass: a fixed end."""
+_SAME_SPEED = 1e-9
+"""By how much the speeds of two cranks, which are products of ratios, may differ relatively by rounding."""
 GROUND, FLYWHEEL = "ground", "flywheel"
 """Words in the list: an end that is held fast, and the flywheel of the machine."""
 
-SEGMENT = "shaft segment"
+SEGMENT, BRANCH = "shaft segment", "branch"
 _KEYS = {
     "mass": ("inertia", "cylinder", "load"),
     SEGMENT: ("stiffness", "diameter", "length", "bore", "shear_modulus", "density", "loss_factor"),
     "gear": ("gear",),
+    BRANCH: (BRANCH,),
 }
 """Kind of an item -> the keys that only such an item has."""
+
+
+def _shaft() -> Listing:
+    """Return the form of a list of items, which a branch has, too."""
+    return Listing(OneOf(Choice((GROUND, FLYWHEEL)), RecordForm(ShaftPart)))
 
 
 class ShaftPart(Record):
@@ -116,6 +126,12 @@ class ShaftPart(Record):
         above=0,
         example="0.25",
     )
+    branch: tuple[ShaftPart, ...] | None = field(
+        Nested(_shaft, "a list of such items"),
+        "A side line that begins at the mass before it in the list, with a shaft segment or a gear, and ends with a "
+        "mass or `ground`; the list goes on behind it from that mass",
+        gives=lambda values: {"branch": tuple(_of_words(values["branch"]))},
+    )
 
     word: str = ""
 
@@ -127,7 +143,7 @@ class ShaftPart(Record):
             if vars(self)[key] is not None
         ]
         piece = "'stiffness', or 'diameter' and 'length', of a shaft segment"
-        nothing = f"give 'inertia' or 'cylinder' of a mass, {piece}, or 'gear'"
+        nothing = f"give 'inertia' or 'cylinder' of a mass, {piece}, 'gear', or 'branch'"
         yield Rule((), not given and not self.word, nothing)
         for kind, key in given:
             first, other = given[0]
@@ -143,6 +159,8 @@ class ShaftPart(Record):
         )
         both = self.gear is not None and self.damping is not None
         yield Rule("damping", both, "is for a mass or a shaft segment; a gear has none")
+        both = self.branch is not None and self.damping is not None
+        yield Rule("damping", both, "is for a mass or a shaft segment; give it in the branch")
         if self.bore is not None and self.diameter is not None:
             yield Rule(
                 "bore",
@@ -152,7 +170,10 @@ class ShaftPart(Record):
 
     @property
     def kind(self) -> str:
-        """What it is: `mass`, `shaft segment`, `gear` or `ground`; a mass, too, is the flywheel of the machine."""
+        """What it is: `mass`, `shaft segment`, `gear`, `branch` or `ground`.
+
+        A mass, too, is the flywheel of the machine.
+        """
         given = [
             kind for kind, keys in _KEYS.items() if any(vars(self)[key] is not None for key in keys)
         ]
@@ -234,84 +255,145 @@ def _of_words(parts: Sequence[Any]) -> list[Any]:
 
 
 def shaft_faults(
-    given: Sequence[ShaftPart | str | Reported], cylinders: Sequence[str]
+    items: Sequence[ShaftPart | str | Reported], cylinders: Sequence[str]
 ) -> list[Fault]:
-    """Return what is wrong with a list; if parts could not be read, only the faults of single other parts."""
-    parts = _of_words(given)
-    faults, seen = [], set[str]()
-    named = [
-        (index, part.cylinder or ()) for index, part in enumerate(parts) if part is not REFUSED
-    ]
-    for place, name in [((index, "cylinder"), name) for index, names in named for name in names]:
-        if name not in cylinders:
-            there = f"the machine has {', '.join(cylinders) or 'none'}"
-            faults.append(
-                Fault(place, f"no cylinder '{name}'{did_you_mean(name, tuple(cylinders))}; {there}")
-            )
-        elif name in seen:
-            faults.append(Fault(place, f"'{name}' is in the shaft line twice"))
-        seen.add(name)
-    absent = [name for name in cylinders if name not in seen]
-    whole = [part for part in parts if part is not REFUSED]
-    if len(whole) == len(parts):
-        if absent and not seen - set(cylinders):
-            item = f"give its crank an item '{{cylinder: {absent[0]}}}'"
-            faults.append(Fault((), f"{', '.join(absent)} is missing in it; {item}"))
-        faults += (Fault(place, message) for broken, place, message in _of_order(whole) if broken)
+    """Return what is wrong with a list.
+
+    If parts could not be read, only the faults of single other parts.
+    """
+    parts = _of_words(items)
+    read = [part for part in parts if part is not REFUSED]
+    faults = _crank_faults(parts, cylinders, is_complete=len(read) == len(parts))
+    if len(read) == len(parts):
+        rules = (*_of_order(read), *_of_whole_line(read))
+        faults += (Fault(place, message) for is_broken, place, message in rules if is_broken)
     return [fault.below(("shaft",)) for fault in faults]
 
 
-def _of_order(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str]]:
-    """Yield what may be wrong with the order and the number of items: whether it is, the place, the message."""
-    kinds = [part.kind for part in parts]
-    for index, (before, kind, after) in enumerate(zip(["", *kinds], kinds, [*kinds[1:], ""])):
-        here, gear, inside = (index,), (index, "gear"), bool(before and after)
-        yield (
-            kind == SEGMENT and not inside,
-            here,
-            "a shaft line begins and ends with a mass, or with 'ground'",
-        )
-        twice = "no shaft segment between this mass and the one before; give it, or one mass"
+def _crank_faults(
+    parts: Sequence[ShaftPart | Reported], cylinders: Sequence[str], is_complete: bool
+) -> list[Fault]:
+    """Return what is wrong with the names of cylinders; is_complete: whether all parts were read."""
+    faults, seen = list[Fault](), set[str]()
+    there = f"the machine has {', '.join(cylinders) or 'none'}"
+    for item in _items(parts):
+        place = (*item.path, "cylinder")
+        for name in item.part.cylinder or ():
+            if name not in cylinders:
+                hint = did_you_mean(name, tuple(cylinders))
+                faults.append(Fault(place, f"no cylinder '{name}'{hint}; {there}"))
+            elif name in seen:
+                faults.append(Fault(place, f"'{name}' is in the shaft line twice"))
+            seen.add(name)
+
+    # a name that is no cylinder may be one of those that are missing
+    absent = [name for name in cylinders if name not in seen]
+    are_all_cylinders = not seen - set(cylinders)
+    if is_complete and absent and are_all_cylinders:
+        remedy = f"give its crank an item '{{cylinder: {absent[0]}}}'"
+        faults.append(Fault((), f"{', '.join(absent)} is missing in it; {remedy}"))
+    return faults
+
+
+class _Item(NamedTuple):
+    """An item of a shaft line or of its branches: its path in the list, and its speed over that of the first item."""
+
+    path: Path
+    part: ShaftPart
+    speed: float
+
+
+def _items(
+    parts: Sequence[ShaftPart | Reported], path: Path = (), speed: float = 1.0
+) -> Iterator[_Item]:
+    """Yield every item that could be read, those of a branch behind the branch itself."""
+    for index, part in enumerate(parts):
+        if part is REFUSED:
+            continue
+        if part.gear is not None:
+            speed *= part.gear
+        here = (*path, index)
+        yield _Item(here, part, speed)
+        yield from _items(part.branch or (), (*here, "branch"), speed)
+
+
+def _of_order(
+    parts: Sequence[ShaftPart], path: Path = (), is_branch: bool = False
+) -> Iterator[tuple[bool, Path, str]]:
+    """Yield what may be wrong with the order of the items: whether it is, the place, the message.
+
+    path: of the list; is_branch: whether it begins at a mass of another one.
+    """
+    # branches are looked at by themselves; along the line they are left out
+    before = origin = "mass" if is_branch else ""
+    along = list[tuple[Path, ShaftPart]]()
+    for index, part in enumerate(parts):
+        here = (*path, index)
+        if part.kind == BRANCH:
+            is_behind_mass = bool(along) and before == "mass"
+            yield not is_behind_mass, here, "a branch begins at a mass; put it behind one"
+            yield from _of_order(part.branch or (), (*here, "branch"), is_branch=True)
+        else:
+            along.append((here, part))
+            before = part.kind
+
+    kinds = [part.kind for _, part in along]
+    if is_branch:
+        yield not parts, path, "the branch has no items"
+    following = [*kinds[1:], ""]
+    for number, (here, part) in enumerate(along):
+        before = kinds[number - 1] if number else origin
+        kind, after, gear = kinds[number], following[number], (*here, "gear")
+        is_inside = bool(before and after)
+        ends = "a shaft line begins and ends with a mass, or with 'ground'"
+        yield kind == SEGMENT and not is_inside, here, ends
+        between = "this mass and the one before; give it, or one mass"
+        twice = f"no shaft segment between {between}"
+        if is_branch and not number:
+            between = "this mass and the one that it branches from"
+            twice = f"no shaft segment or gear between {between}"
         yield kind == before == "mass", here, twice
-        in_series = kind == before == SEGMENT and not (
-            parts[index].has_inertia or parts[index - 1].has_inertia
-        )
-        damped = in_series and bool(parts[index].damping or parts[index - 1].damping)
-        yield (
-            damped,
-            here,
-            "segments in series with a damper cannot be combined; give a mass between them",
-        )
-        yield kind == GROUND and inside, here, "'ground' is a fixed end; it must be first or last"
-        at_end = kind == "gear" and not inside
-        yield at_end, gear, "a gear joins two parts; give what comes before and after it"
-        massless = kind == "gear" and inside and "mass" not in (before, after)
-        yield massless, gear, "gears have inertia; give it as a mass before or after the gear"
-        held = GROUND in (kind, before) and bool({kind, before} & {"mass", "gear"})
-        yield (
-            held,
-            here,
-            "a shaft segment is missing between 'ground' and the first mass; give its stiffness",
-        )
-    gears, grounds, cranks, loads = (
-        [index for index, of_this in enumerate(each) if of_this]
-        for each in zip(
-            *((part.gear, part.word == GROUND, part.cylinder, part.load) for part in parts)
-        )
-    )
-    one = "one reduction is all that a shaft line may have; refer the others to it by u²"
-    yield len(gears) > 1, (*gears[1:2], "gear"), one
-    both = "a shaft that is held at both ends does not turn a crank; leave one 'ground' out"
-    yield len(grounds) > 1 and bool(cranks), (*cranks[:1],), both
+        if kind == before == SEGMENT:
+            other = along[number - 1][1]
+            is_combined = not (part.has_inertia or other.has_inertia)
+            is_damped = bool(part.damping or other.damping)
+            message = "segments in series with a damper cannot be combined"
+            yield is_combined and is_damped, here, f"{message}; give a mass between them"
+        last = "'ground' is a fixed end; it must be first or last"
+        yield kind == GROUND and is_inside, here, last
+        joins = "a gear joins two parts; give what comes before and after it"
+        yield kind == "gear" and not is_inside, gear, joins
+        is_massless = kind == "gear" and is_inside and "mass" not in (before, after)
+        massless = "gears have inertia; give it as a mass before or after the gear"
+        yield is_massless, gear, massless
+        is_held = GROUND in (kind, before) and bool({kind, before} & {"mass", "gear"})
+        held = "a shaft segment is missing between 'ground' and the first mass; give its stiffness"
+        yield is_held, here, held
+
+
+def _of_whole_line(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str]]:
+    """Yield what may be wrong with a line and all its branches: whether it is, the place, the message."""
+    items = list(_items(parts))
+    cranks = [item for item in items if item.part.cylinder]
+    grounds = [item for item in items if item.part.word == GROUND]
+    loads = [item for item in items if item.part.load]
+    kinds = [item.part.kind for item in items]
+
+    if cranks:
+        both = "a shaft that is held at both ends does not turn a crank; leave one 'ground' out"
+        yield len(grounds) > 1, cranks[0].path, both
     single = "a single mass cannot vibrate; give a second one and the shaft segment between them"
-    yield kinds.count("mass") + min(len(grounds), 1) < 2, (), single
-    yield len(loads) > 1, (*loads[1:2], "load"), "one mass takes the load; leave one of them out"
-    around = bool(gears and cranks and cranks[0] < gears[0] < cranks[-1])
-    yield (
-        around,
-        (*gears[:1], "gear"),
-        "there are cranks before and after the gear; all must turn at one speed",
-    )
+    is_alone = kinds.count("mass") + min(len(grounds), 1) < 2
+    is_geared_only = "gear" in kinds and SEGMENT not in kinds
+    yield is_alone or is_geared_only, (), single
+    if len(loads) > 1:
+        yield True, (*loads[1].path, "load"), "one mass takes the load; leave one of them out"
+    for crank in cranks:
+        speed = crank.speed / cranks[0].speed
+        if not math.isclose(speed, 1.0, rel_tol=_SAME_SPEED):
+            unequal = f"cranks turn at different speeds (1 and {speed:g}); all must turn at one"
+            yield True, (*crank.path, "cylinder"), unequal
+            return
 
 
 def line_of(given: Sequence[ShaftPart | str], cylinders: Sequence[str] = ()) -> ShaftLine:
@@ -331,18 +413,22 @@ class _Assembly:
         self.segments: list[ShaftSegment] = []
         self._joints = 0
         self._loads: list[int] = []
-        speeds = [speed for part, speed in _with_speeds(parts) if part.cylinder]
+        speeds = [item.speed for item in _items(parts) if item.part.cylinder]
         self._crank_speed = speeds[0] if speeds else 1.0
-        last = self._follow(parts, 1.0)
+        # a line begins at a fixed end, unless a mass is first
+        last = self._follow(parts, 1.0, GROUNDED)
         # the driving or driven machine is at an end, and is no crank
         cranks_are_last = bool(self.masses[last].cylinders) and not self.masses[0].cylinders
         usual = 0 if cranks_are_last else last
         load = self._loads[0] if self._loads else usual
         self.line = ShaftLine(tuple(self.masses), tuple(self.segments), load)
 
-    def _follow(self, parts: Sequence[ShaftPart], speed: float) -> int:
-        """Add the items along a shaft, and return the number of its last mass; speed: over that of the first item."""
-        last = mass = GROUNDED  # a line begins at a fixed end, unless a mass is first
+    def _follow(self, parts: Sequence[ShaftPart], speed: float, mass: int) -> int:
+        """Add the items along a shaft, and return the number of its last mass.
+
+        speed: over that of the first item of the line; mass: the number of that at which the items begin, or GROUNDED.
+        """
+        last = mass
         segment: ShaftSegment | None = None
         for part in parts:
             if part.gear is not None:
@@ -350,7 +436,9 @@ class _Assembly:
             ratio = speed / self._crank_speed
             if part.kind == "gear":
                 continue
-            if part.kind == SEGMENT:
+            if part.kind == BRANCH:
+                self._follow(part.branch or (), speed, mass)
+            elif part.kind == SEGMENT:
                 following = _segment(part, ratio)
                 if segment is None:
                     segment = following
@@ -400,16 +488,6 @@ class _Assembly:
         """Add a segment between two masses, and return the one behind it."""
         self.segments.append(replace(segment, before=before, behind=behind))
         return behind
-
-
-def _with_speeds(
-    parts: Sequence[ShaftPart], speed: float = 1.0
-) -> Iterator[tuple[ShaftPart, float]]:
-    """Yield each item with its speed over that of the first one."""
-    for part in parts:
-        if part.gear is not None:
-            speed *= part.gear
-        yield part, speed
 
 
 def _geared(mass: ShaftMass, other: ShaftMass) -> ShaftMass:

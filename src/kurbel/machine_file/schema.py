@@ -9,7 +9,15 @@ from collections import Counter
 from collections.abc import Mapping
 
 from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, FigureForm, Figures
-from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf, RecordForm, Variant
+from kurbel.declared.forms.structures import (
+    Inline,
+    Keyed,
+    Listing,
+    Nested,
+    OneOf,
+    RecordForm,
+    Variant,
+)
 from kurbel.declared.forms.values import Form, NumberForm, Schema, Text
 from kurbel.declared.keys import required
 from kurbel.declared.numerals import RATIO, WRITTEN
@@ -42,6 +50,7 @@ def _of(form: Form, definitions: Schema) -> Schema:
     if isinstance(form, RecordForm):
         name = form.record.__name__
         if name not in definitions:
+            definitions[name] = {}  # known before its keys are, one of which may lead back to it
             definitions[name] = _of_mapping(form, definitions)
         return _reference(name)
     if isinstance(form, Listing):
@@ -52,6 +61,8 @@ def _of(form: Form, definitions: Schema) -> Schema:
             short = _mapping(definitions[form.item.record.__name__]["properties"])
             item = {"if": {"required": ["like"]}, "then": short, "else": item}
         return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_ITEMS}
+    if isinstance(form, Nested):
+        return _of(form.outer(), definitions)
     if isinstance(form, OneOf):
         return {"anyOf": [_of(one, definitions) for one in form.forms]}
     if isinstance(form, Keyed):

@@ -168,12 +168,17 @@ def strength_left_out(machine: Machine) -> Iterator[LeftOut]:
         else "no inclination given"
     )
     journals = "" if shaft.journal_diameter else "no journal_diameter given"
+    from kurbel.solver.shaft import throws_of
+
+    # a bearing between two throws carries both
+    pressure = journals or ("" if shaft.journal_length else "no journal_length given")
+    if not pressure and len(throws_of(machine.cylinders)) > 1:
+        pressure = "bearings between two throws carry both; see kurbel bearings"
     yield from missing(
         {
             "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
             "journals": journals,
-            "pressure on the journals": journals
-            or ("" if shaft.journal_length else "no journal_length given"),
+            "pressure on the journals": pressure,
             "p_m v": _speeds(machine)[0],
             "safety": "" if shaft.allowable_bending else "no allowable_bending given",
             "α₀ of the webs": ""

@@ -494,17 +494,12 @@ def shells(case: Case) -> tuple[bool, str]:
 
 def rods_on_pin(spacing: float | None) -> str:
     """Return the note on where several rods load one pin; spacing: `rod_spacing` in m."""
+    first = "that of the cylinder which is first in the file farthest from bearing B"
     if spacing is None:
-        return (
-            "Rods on one pin are side by side, each on an equal part of its length, that of the cylinder which is "
-            "first in the file next to bearing A."
-        )
+        return f"Rods on one pin are side by side, each on an equal part of its length, {first}."
     if spacing == 0:
         return "Rods on one pin all load it in its middle, as fork and blade."
-    return (
-        f"Rods on one pin are {show(spacing, 'length')} apart, that of the cylinder which is first in the "
-        "file next to bearing A."
-    )
+    return f"Rods on one pin are {show(spacing, 'length')} apart, {first}."
 
 
 def _strength_warnings(case: Case) -> Iterator[str]:

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
+from kurbel.machine.shaft_line import GROUNDED, ShaftLine
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
 from kurbel.pictures.picture_source import CurveFormula, Source, curve, level
 from kurbel.solver.chapters.bearings import BearingColumns
@@ -233,15 +234,35 @@ def shaft_modes(source: Source) -> Iterator[Panel]:
     """Angles by which the masses of the shaft line turn in its first natural vibrations."""
     vibration = source.results
     names = tuple(mass.name for mass in vibration.line.masses)
-    numbers = np.arange(float(len(names)))
+    numbers = _along(vibration.line)
+    is_gap = np.isnan(numbers)
+    masses = np.where(is_gap, 0, numbers).astype(int)
     curves = []
     for mode, frequency in _frequencies(source):
         angles = np.asarray(vibration.holzer(mode).angles, dtype=float)
         relative = angles / np.abs(angles).max()
-        curves.append(Curve(Words(f"{mode}: {frequency:.4g} Hz"), numbers, relative))
+        upright = np.where(is_gap, math.nan, relative[masses])
+        curves.append(Curve(Words(f"{mode}: {frequency:.4g} Hz"), numbers, upright))
     if curves:
         up = Axis(Words("θ", words="angle over the largest"))
-        yield Panel(Axis(Words(""), names=names), up, (*curves, level(numbers)))
+        rest = level(np.arange(float(len(names))))
+        yield Panel(Axis(Words(""), names=names), up, (*curves, rest))
+
+
+def _along(line: ShaftLine) -> Array:
+    """Return the numbers of the masses along a shaft line, with a gap before a branch or behind it.
+
+    What follows a gap begins at the mass where it leaves the line.
+    """
+    numbers = [0.0]
+    for segment in line.segments:
+        before, behind = segment.before, segment.behind
+        if GROUNDED in (before, behind):
+            continue
+        if before != numbers[-1]:
+            numbers += [math.nan, math.nan, before]
+        numbers.append(behind)
+    return np.array(numbers)
 
 
 def _frequencies(source: Source) -> list[tuple[int, float]]:

@@ -343,8 +343,13 @@ def _torsion_notes(found: ShaftVibration, usual: bool, hidden: bool) -> Iterator
         )
     if found.chain.segment_inertias.any():
         yield "Segments have inertia of their own; Σω²JΘ does not add up row by row."
-    if any(piece.ratio != 1 for piece in line.segments):
-        yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."
+    ratios = {segment.ratio for segment in line.segments} - {1.0}
+    if ratios:
+        gear = "gear" if len(ratios) == 1 else "gears"
+        yield (
+            f"Masses and stiffnesses beyond the {gear} are referred to the cranks' shaft by u²; "
+            "torques are true ones."
+        )
     if not found.machine.cylinders and found.machine.effort:
         yield f"The effort acts on {line.masses[0].name}, the first mass."
     if found.segments:

@@ -438,6 +438,24 @@ class Listing(Form):
         return completed
 
 
+class Nested(Form):
+    """A list within an item of another list, of the same items: a branch in a shaft line.
+
+    outer: returns the form of the outer list, which does not exist yet when its items are declared. It has no parts of
+    its own, so that what walks over all keys meets those of the items once.
+    """
+
+    shape = list
+
+    def __init__(self, outer: Callable[[], Listing], written: str) -> None:
+        super().__init__("a list, each item after '- '", written=written)
+        self.outer = outer
+
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
+        """Read a list as the outer one."""
+        return self.outer().take(reading, value, path)
+
+
 class OneOf(Form):
     """Several forms: the first that has the shape of a value (text, list, mapping) and suits what a text looks like.
 
