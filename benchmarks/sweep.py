@@ -95,7 +95,7 @@ def report(name: str, many: float, count: int, single: float | None = None) -> N
 
 def beside_alone(name: str, batches: list[Batch], requested: list[Answer]) -> None:
     """Compare machines side by side with the same ones alone."""
-    alone = [batches[0].one(place) for place in range(SINGLE)]
+    alone = [batches[0].single(place) for place in range(SINGLE)]
     single = seconds(lambda: [answered_alone(machine, requested) for machine in alone]) / SINGLE
     report(name, seconds(lambda: answers_of(batches, requested)), DESIGNS, single)
 
@@ -106,7 +106,7 @@ def main() -> None:
     angles = np.linspace(0.0, 1000.0, 1_000_000)
     print(f"np.sin of a million doubles: {seconds(lambda: np.sin(angles)) * 1e3:.1f} ms")
     machines = designs(WATERWORKS, DESIGNS)
-    every = list(requested_answers(machines[0].one(0), ()))
+    every = list(requested_answers(machines[0].single(0), ()))
     motion = [
         one for one in every if one.quantity.id in ("c_m", "c_max", "b_max", "b_min", "phi_b_zero")
     ]
@@ -115,14 +115,16 @@ def main() -> None:
     for name in OTHERS:
         batches = designs(name, DESIGNS)
         beside_alone(
-            f"key values of forces: {name}", batches, list(requested_answers(batches[0].one(0), ()))
+            f"key values of forces: {name}",
+            batches,
+            list(requested_answers(batches[0].single(0), ())),
         )
     for name, columns in CHAPTERS:
         batches = at_speeds(name, DESIGNS)
         beside_alone(
             f"{', '.join(columns)}: {name}",
             batches,
-            list(requested_answers(batches[0].one(0), columns)),
+            list(requested_answers(batches[0].single(0), columns)),
         )
     report("binding to the file", seconds(lambda: designs(WATERWORKS, DESIGNS)), DESIGNS)
     axes = (read_axis("rod_ratio=uniform(3, 6)"), read_axis("speed=uniform(40, 60 rpm)"))

@@ -1,10 +1,12 @@
 """`kurbel balance` as it is called: its columns, tables, switches, and what it says where it cannot answer."""
 
+import json
+import re
 from typing import Any
 
 import pytest
 
-from command import answer
+from command import answer, run
 from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -29,3 +31,15 @@ def test_columns_and_tables_have_the_names_that_are_relied_on() -> None:
     named = {"F_free_max", "M_free_max", "counterweight_best", "F_free_best"}
     assert named < set(ids(found["machine_key_values"]))
     assert next(one["values"][-1] for one in found["machine_columns"] if one["id"] == "phi") == 360
+
+
+def test_names_of_weights_are_words_for_programs_and_texts_for_people() -> None:
+    three = (
+        "speed: 60 rpm\ncylinders: {count: 3, spacing: 100 mm, firing_order: 1-2-3, "
+        "each: {stroke: 100 mm, rod_ratio: 4, masses: {reciprocating: 1 kg}}}"
+    )
+    whole = json.loads(run("balance", "-", "-f", "json", text=three).stdout)
+    (best,) = [one for one in whole["machine_place_tables"] if one["id"] == "best_weights"]
+    assert "shaft_n_1_against_the_crank_A" in [row["weight"] for row in best["rows"]]
+    assert all(re.fullmatch(r"\w+", row["weight"]) for row in best["rows"])
+    assert "shaft n = 1, against the crank: A" in run("balance", "-", text=three).stdout

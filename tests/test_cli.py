@@ -217,11 +217,11 @@ SELECTED = b"First selection. All columns, angles and key values: kurbel forces 
 
 @POSIX_ONLY
 def test_a_low_terminal_shows_a_first_selection_and_says_how_to_see_all() -> None:
-    shown = on_terminal("forces", WATERWORKS, columns=80, rows=24, NO_COLOR="1").decode()
+    shown = on_terminal("forces", WATERWORKS, columns=80, rows=33, NO_COLOR="1").decode()
     whole = process("forces", WATERWORKS, COLUMNS="80").stdout.decode()
     lines = [line.rstrip() for line in shown.splitlines()]
-    assert (len(lines) < 24, lines[1].encode()) == (True, SELECTED)
-    table, key_values = (shown[shown.index("φ") :].split("Key values")[n] for n in (0, 1))
+    assert (len(lines) < 33, lines[1].encode()) == (True, SELECTED)
+    key_values, table = shown.replace("\r", "").split("\n\nφ")
     # every number is that of the whole page, where it is among all the others
     numbers = [
         line.split() for line in whole.splitlines() if line[:1] in "xPNT" and line[:1].strip()
@@ -232,6 +232,18 @@ def test_a_low_terminal_shows_a_first_selection_and_says_how_to_see_all() -> Non
     assert {line.split()[0] for line in key_values.splitlines() if line.startswith("  ")} < set(
         whole.split()
     )
+
+
+@POSIX_ONLY
+def test_on_24_lines_nothing_scrolls_away() -> None:
+    """The table over the angle gives way to the key values, and the prompt has the last line."""
+    shown = on_terminal("forces", WATERWORKS, columns=80, rows=24, NO_COLOR="1").decode()
+    lines = [line.rstrip() for line in shown.splitlines()]
+    symbols = [line.split()[0] for line in lines if line.startswith("  ")]
+    assert len(lines) <= 23
+    assert lines[1].encode() == SELECTED
+    assert {"b_max", "c_max", "A_f", "N_f", "e_f", "F_m"} <= set(symbols)
+    assert not any(line.startswith("φ") for line in lines)
 
 
 @POSIX_ONLY

@@ -111,6 +111,94 @@ def test_a_vessel_saves_what_the_books_say() -> None:
         assert pump["vessel_saving"].value == pytest.approx(saved, rel=1e-12)
 
 
+BOTH_PIPES = """\
+pump:
+  suction_pipe: {length: 6 m, diameter: 80 mm, friction_factor: 0.03}
+  delivery_pipe: {length: 9 m, diameter: 50 mm, friction_factor: 0.02}
+"""
+UNLIKE = """\
+speed: 60 rpm
+cylinders:
+  - {stroke: 200 mm, rod_ratio: RATIO, bore: 100 mm, indicator: {H, crank_end: mirrored}}
+  - {stroke: 200 mm, rod_ratio: RATIO, bore: 100 mm, crank_position: 90 deg, indicator: {H}}
+""".replace("H", SINGLE)
+"""A double- and a single-acting pump at 90°: what is drawn in is not what is delivered a moment later."""
+
+
+def flows_of_unlike(ratio: float, samples: int = 200_000) -> tuple[np.ndarray, np.ndarray]:
+    """Return what both pumps of `UNLIKE` deliver and draw in, in m³/s at 60 rpm, in the middle of equal steps."""
+    phi = (np.arange(samples) + 0.5) * 2 * np.pi / samples
+
+    def outward(angle: np.ndarray) -> np.ndarray:
+        aside = np.sin(angle) / ratio
+        return (
+            -STROKE
+            / 2
+            * np.sin(angle)
+            * (1 + np.cos(angle) / ratio / np.sqrt(1 - aside**2))
+            * 2
+            * np.pi
+        )
+
+    double, single = AREA * outward(phi), AREA * outward(phi - np.pi / 2)
+    return np.abs(double) + np.maximum(single, 0), np.abs(double) + np.maximum(-single, 0)
+
+
+@pytest.mark.parametrize(("ratio", "printed"), [(math.inf, 0.316), (5.0, None), (4.0, None)])
+def test_vessels_save_the_work_of_both_pipes(ratio: float, printed: float | None) -> None:
+    """Losses are as the cube of the flow of each pipe, suction by what is drawn in."""
+    written = "infinite" if math.isinf(ratio) else ratio
+    pump = pump_of(UNLIKE.replace("RATIO", str(written)) + BOTH_PIPES)
+    delivered, drawn = flows_of_unlike(ratio)
+    bare = steady = 0.0
+    for flow, length, diameter, factor in ((drawn, 6.0, 0.08, 0.03), (delivered, 9.0, 0.05, 0.02)):
+        section = math.pi / 4 * diameter**2
+        scale = 1000 * factor * length / (2 * diameter * section**2)  # of a turn in one second
+        bare += scale * np.mean(flow**3)
+        steady += scale * np.mean(flow) ** 3
+    assert pump["pipe_work_bare"].value == pytest.approx(bare, rel=1e-8)
+    assert pump["pipe_work_steady"].value == pytest.approx(steady, rel=1e-8)
+    assert pump["vessel_saving"].value == pytest.approx(1 - steady / bare, rel=1e-8)
+    if printed is not None:
+        assert pump["vessel_saving"].value == pytest.approx(printed, abs=5e-4)
+
+
+def test_pipes_without_friction_leave_the_saving_of_the_flow() -> None:
+    smooth = BOTH_PIPES.replace("0.03", "0").replace("0.02", "0")
+    text = UNLIKE.replace("RATIO", "5")
+    assert pump_of(text + smooth)["vessel_saving"].value == pump_of(text)["vessel_saving"].value
+
+
+def test_each_pipe_has_the_head_of_its_own_flow() -> None:
+    """Where the single-acting pump draws in, 45° after its dead centre, the delivery pipe carries the other alone."""
+    pump = pump_of(UNLIKE.replace("RATIO", "infinite") + BOTH_PIPES)
+    phi = 135.0  # of the double-acting pump; 45° of the single-acting one, whose head end grows
+    lone = AREA * STROKE / 2 * 2 * math.pi * math.sin(math.radians(135))
+    second = AREA * STROKE / 2 * 2 * math.pi * math.sin(math.radians(45))
+    columns = pump.columns([phi], "friction_head", "delivery_friction_head")
+
+    def head(flow: float, length: float, diameter: float, factor: float) -> float:
+        u = flow / (math.pi / 4 * diameter**2)
+        return factor * length * u**2 / (2 * 9.80665 * diameter)
+
+    assert columns["friction_head"] == pytest.approx(
+        [head(lone + second, 6, 0.08, 0.03)], rel=1e-12
+    )
+    assert columns["delivery_friction_head"] == pytest.approx(
+        [head(lone, 9, 0.05, 0.02)], rel=1e-12
+    )
+
+
+def test_a_long_suction_pipe_lifts_less_by_its_acceleration_head() -> None:
+    """Without friction the lift is the barometer less vapour pressure and the head l/(g a) A R ω² where it begins."""
+    pipe = "pump: {suction_pipe: {length: 8 m, diameter: 80 mm}}"
+    pump = pump_of(machine("one single-acting", "infinite", pipe))
+    needed = 8 / (9.80665 * math.pi / 4 * 0.08**2) * AREA * STROKE / 2 * (2 * math.pi) ** 2
+    assert pump["suction_lift_max"].value == pytest.approx(
+        (101325 - 2339) / 9806.65 - needed, rel=1e-12
+    )
+
+
 @pytest.mark.parametrize("exponent", [1.0, 1.3])
 def test_vessels_both_ways(exponent: float) -> None:
     """The wanted swing gives a volume, and that volume the swing; isothermal it is ΔV/δ."""
@@ -233,6 +321,50 @@ def test_an_exponent_of_its_own_for_the_expansion() -> None:
     (stage,) = api.solve(api.loads(text)).delivery.stages
     assert stage["volumetric_efficiency"].value == pytest.approx(
         1 - 0.1 * (4 ** (1 / 1.2) - 1), rel=1e-12
+    )
+    # what is delivered was compressed; only what stays in the clearance expands
+    assert stage["discharge_temperature"].value == pytest.approx(
+        308.15 * 4 ** (0.3 / 1.3), rel=1e-12
+    )
+
+
+def test_the_gas_of_a_cylinder_precedes_that_of_the_machine() -> None:
+    """Temperature, gas constant and exponent each, where the cylinder has its own; else those of the machine."""
+    own = "gas: {inlet_temperature: 60 °C, gas_constant: 200 J/(kg K), isentropic_exponent: 1.25}\n"
+    indented = "".join(f"    {line}\n" for line in ENDS.splitlines()[1:])
+    general = next(line for line in ENDS.splitlines() if line.startswith("gas"))
+    local = indented.replace(general, own.strip())
+    whole = f"speed: 600 rpm\n{general}\ncylinders:\n  -\n{local}"
+    (stage,) = api.solve(api.loads(whole)).delivery.stages
+    (alone,) = api.solve(api.loads(ENDS.replace(general, own.strip()))).delivery.stages
+    capacity = alone["capacity"].value
+    assert stage["discharge_temperature"].value == pytest.approx(
+        333.15 * 4 ** (0.3 / 1.3), rel=1e-12
+    )
+    assert stage["mass_flow"].value == pytest.approx(1e5 * capacity / (200 * 333.15), rel=1e-12)
+    power = 1.25 / 0.25 * 1e5 * capacity * (4 ** (0.25 / 1.25) - 1)
+    assert stage["isentropic_power"].value == pytest.approx(power, rel=1e-12)
+
+    partly = whole.replace(own.strip(), "gas: {inlet_temperature: 60 °C}")
+    (mixed,) = api.solve(api.loads(partly)).delivery.stages
+    constant = 8.31446261815324 / 28.96e-3
+    assert mixed["mass_flow"].value == pytest.approx(
+        1e5 * capacity / (constant * 333.15), rel=1e-12
+    )
+
+
+@pytest.mark.parametrize("excess", [1e-14, 1e-10, 1e-6, 1e-2])
+def test_isentropic_power_near_the_isothermal_one(excess: float) -> None:
+    """At κ → 1 it is p_s V̇ ln(p_d/p_s); e = (κ − 1)/κ times ln(p_d/p_s)/2 is the first term beyond."""
+    kappa = 1 + excess
+    text = ENDS.replace("isentropic_exponent: 1.4", f"isentropic_exponent: {kappa!r}")
+    (stage,) = api.solve(api.loads(text)).delivery.stages
+    share = (kappa - 1) / kappa
+    series = math.log(4) * sum(
+        (share * math.log(4)) ** k / math.factorial(k + 1) for k in range(12)
+    )
+    assert stage["isentropic_power"].value == pytest.approx(
+        1e5 * stage["capacity"].value * series, rel=4e-15
     )
 
 

@@ -19,11 +19,11 @@ from pathlib import Path
 
 import pytest
 
-import from_declarations  # docs/from_declarations.py
-import notebook  # docs/notebook.py
-import python_reference  # docs/python_reference.py
-import shipped  # docs/shipped.py
-import validation  # docs/validation.py
+import from_declarations  # tools/from_declarations.py
+import notebook  # tools/notebook.py
+import python_reference  # tools/python_reference.py
+import shipped  # tools/shipped.py
+import validation  # tools/validation.py
 from command import run
 from representative import law_of_each
 from worked_examples import TABLE

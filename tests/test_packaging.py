@@ -90,14 +90,14 @@ def test_wheel_and_sdist_hold_every_file_once(tmp_path: Path) -> None:
         "tests/test_packaging.py",
     ):
         assert held.count(name) == 1
-    for folder in ("docs", "benchmarks", "tests", "src", "configs"):
+    for folder in ("docs", "tools", "benchmarks", "tests", "src", "configs"):
         there = [f"{folder}/{path.name}" for path in (ROOT / folder).iterdir() if path.is_file()]
         assert set(there) <= set(held)
     assert sorted(Path(name).stem for name in held if "configs/" in name) == MACHINES
     names = zipfile.ZipFile(wheel).namelist()
     assert sorted(Path(name).stem for name in names if name.endswith(".yaml")) == MACHINES
     assert all(f"kurbel/configs/{machine}.yaml" in names for machine in MACHINES)
-    assert not [name for name in names if name.startswith(("tests", "benchmarks", "docs"))]
+    assert not [name for name in names if name.startswith(("tests", "benchmarks", "docs", "tools"))]
     python = installed(tmp_path, wheel)
     check_examples(python, tmp_path)
     assert tmp_path in origin(python, tmp_path).parents

@@ -10,11 +10,12 @@ import pytest
 
 from indicated import Engine, absolute, columns_file, cycles, indicated
 from kurbel.machine_file import loads
+from kurbel.mechanisms.setting import Setting
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.notes.warnings import machine_notes
 from kurbel.solver.case import Case
 from kurbel.traces.checks import CHECKS, TraceReading
-from kurbel.traces.correct import Setting, Trace, corrected
+from kurbel.traces.correct import Trace, corrected
 from representative import few
 
 AMBIENT = 1.01325

@@ -9,6 +9,12 @@ from kurbel.arrays import Array, Number
 from kurbel.numerics.arithmetic import magnitude, where
 from kurbel.numerics.pieces import Pieces
 
+_SINES = np.array([0.0, 1.0, 0.0, -1.0])
+"""Of 0°, 90°, 180° and 270°."""
+
+CYCLES = {"two-stroke": 1, "four-stroke": 2}
+"""Working cycle -> revolutions of the shaft."""
+
 
 class CrankAngle(NamedTuple):
     """A crank angle, or an array of them, with its sine and cosine.
@@ -83,6 +89,7 @@ def _sin_cos(right_angle: Array, offset: Array) -> tuple[Array, Array]:
     """Return sine and cosine of multiples of 90°, (…, n), plus offsets in degrees of the same shape or (nodes, n)."""
     rest = np.radians(offset)
     sin, cos = np.sin(rest), np.cos(rest)
-    quarter, turn = (right_angle / 90.0).astype(int), np.array([0.0, 1.0, 0.0, -1.0])
-    own_sin, own_cos = turn[quarter % 4], turn[(quarter + 1) % 4]
+    # the last two bits of a whole number are what is left of it by 4, also where it is negative
+    quarter = (right_angle / 90.0).astype(np.intp)
+    own_sin, own_cos = _SINES[quarter & 3], _SINES[(quarter + 1) & 3]
     return sin * own_cos + cos * own_sin, cos * own_cos - sin * own_sin  # a zero is 0.0, never −0.0

@@ -1,8 +1,8 @@
-"""Results in a notebook: the tables of the reports, and pictures."""
+"""Results in a notebook: the tables of the reports, and pictures, which are imported when they are shown."""
 
 import os
 from html import escape
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -10,17 +10,11 @@ from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.machine_file.reader import machine_of
 from kurbel.numerics.extreme import Extreme
-from kurbel.pictures.picture import Picture
-from kurbel.pictures.picture_source import PictureOptions
-from kurbel.pictures.pictures import pictures
-from kurbel.render import Look
-from kurbel.render.drawing import draw_file
-from kurbel.render.markup import Html, written
-from kurbel.render.svg import svg_file
-from kurbel.render.text_tables import key_value_table
 from kurbel.solver import case as solved
 from kurbel.solver.figures import NotebookView, Results
-from kurbel.tables.frame import shown_key_values
+
+if TYPE_CHECKING:
+    from kurbel.pictures.picture import Picture
 
 
 class ShownCase(solved.Case):
@@ -37,13 +31,19 @@ Case = ShownCase
 class Drawing(NamedTuple):
     """Pictures of a machine, one below the other; a notebook shows them."""
 
-    pictures: tuple[Picture, ...]
+    pictures: "tuple[Picture, ...]"
 
     def _repr_svg_(self) -> str:
+        from kurbel.render import Look
+        from kurbel.render.svg import svg_file
+
         return svg_file(self.pictures, Look())
 
     def save(self, file_name: str) -> None:
         """Draw to a file that ends in .svg, .png or .pdf. Raises UsageError where it cannot be written."""
+        from kurbel.render import Look
+        from kurbel.render.drawing import draw_file
+
         draw_file(self.pictures, Look(), file_name)
 
 
@@ -54,6 +54,9 @@ def draw(
 
     angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that does not exist.
     """
+    from kurbel.pictures.picture_source import PictureOptions
+    from kurbel.pictures.pictures import pictures
+
     return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
 
 
@@ -74,6 +77,11 @@ def as_html(shown: solved.Case | Results) -> str:
 
 def _key_values(results: Results, caption: str) -> str:
     """Return a table, or the reason why there is none."""
+    from kurbel.render import Look
+    from kurbel.render.markup import Html, written
+    from kurbel.render.text_tables import key_value_table
+    from kurbel.tables.frame import shown_key_values
+
     with np.errstate(all="ignore"):
         try:
             every = results.key_values().values()

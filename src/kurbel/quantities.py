@@ -1,25 +1,111 @@
-"""Every quantity that kurbel prints, from the classes that compute them: for limits, sweeps, JSON and the reference."""
+"""Every quantity that kurbel prints, from the classes that compute them: for limits, sweeps, JSON and the reference.
 
-from functools import cache
+`every_quantity` opens every chapter and mechanism. A name that a file or an option gives is looked up in `KEY_VALUES`
+or `COLUMNS`, which go from chapter to chapter and open no more of them than the name needs.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache, cached_property
 
 from kurbel.mechanisms.kinds import KINDS
-from kurbel.quantity import Lists
-from kurbel.solver.case import CHAPTERS
-from kurbel.solver.figures import result_rows
+from kurbel.quantity import Lists, Quantity, by_id, called, rejoined_names
+from kurbel.solver.case import CHAPTERS, Chapter
+from kurbel.solver.figures import doors_of, result_rows
 from kurbel.solver.forces import CylinderForces
 
 
 @cache
 def every_quantity() -> Lists:
     """Return all quantities that any machine may have; one that several classes declare is listed for each."""
-    offers = tuple(dict.fromkeys(offer for kind in KINDS for offer in kind.OFFERS))
-    key_offers = tuple(dict.fromkeys(offer for kind in KINDS for offer in kind.KEY_OFFERS))
-    kinds = [chapter.kind for chapter in CHAPTERS]
-    every = [
-        (
-            result_rows(kind, offers, key_offers) if kind is CylinderForces else result_rows(kind)
-        ).lists
-        for kind in kinds
-    ]
-    columns = (quantity for one in every for quantity in one.all_columns)
-    return Lists((*columns,), tuple(quantity for one in every for quantity in one.all_key_values))
+    mechanisms = [door() for door in KINDS.values()]
+    offers = tuple(dict.fromkeys(offer for mechanism in mechanisms for offer in mechanism.OFFERS))
+    key_offers = tuple(
+        dict.fromkeys(offer for mechanism in mechanisms for offer in mechanism.KEY_OFFERS)
+    )
+    columns: list[Quantity] = []
+    key_values: list[Quantity] = []
+    for chapter in CHAPTERS:
+        rows = (
+            result_rows(chapter.kind, offers, key_offers)
+            if chapter.kind is CylinderForces
+            else result_rows(chapter.kind)
+        )
+        columns += rows.lists.all_columns
+        key_values += rows.lists.all_key_values
+    return Lists(tuple(columns), tuple(key_values))
+
+
+class ByChapter(Mapping[str, Quantity]):
+    """Quantities by id; one that an early chapter has is found without opening the later ones.
+
+    of: takes lists of quantities and returns those that are meant, columns or key values.
+    """
+
+    def __init__(self, of: Callable[[Lists], tuple[Quantity, ...]]) -> None:
+        self._of = of
+        self._lists: dict[Chapter, Mapping[str, Quantity]] = {}
+
+    def __getitem__(self, id: str) -> Quantity:
+        if id.isidentifier():
+            for quantities in self._chapter_by_chapter():
+                if id in quantities:
+                    return quantities[id]
+        raise KeyError(id)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    @cached_property
+    def _all(self) -> Mapping[str, Quantity]:
+        return by_id(*self._of(every_quantity()))
+
+    def _chapter_by_chapter(self) -> Iterator[Mapping[str, Quantity]]:
+        """Yield the quantities of each chapter, without those of mechanisms and of parts behind doors; then all."""
+        for chapter in CHAPTERS:
+            if chapter not in self._lists:
+                rows = result_rows(chapter.kind, closed=doors_of(chapter.kind))
+                self._lists[chapter] = by_id(*self._of(rows.lists))
+            yield self._lists[chapter]
+        yield self._all
+
+    def ids_of(self, name: str) -> tuple[str, ...]:
+        """Return the ids of the quantities that a name may mean, see `called`; for an id nothing else is opened."""
+        return (name,) if name in self else called(name, self.values())
+
+    def commands_of(self, id: str) -> Iterator[str]:
+        """Yield the commands that have a quantity, each once; the one whose own it is first."""
+        yielded = set[str]()
+        for quantities in self._chapter_by_chapter():
+            if id not in quantities:
+                continue
+            for command in quantities[id].commands:
+                if command not in yielded:
+                    yielded.add(command)
+                    yield command
+
+    def names_of(self, words: Iterable[str]) -> list[str]:
+        """Return names that were split at their commas as they were before, see `rejoined_names`; with or without a prefix."""
+        names = list(words)
+        are_ids = all(name.rpartition(".")[2] in self for name in names)
+        return names if are_ids else list(rejoined_names(names, self.values()))
+
+
+KEY_VALUES = ByChapter(lambda lists: lists.all_key_values)
+"""All key values."""
+COLUMNS = ByChapter(lambda lists: tuple(column for column in lists.all_columns if column.commands))
+"""All columns that a command prints."""
+
+
+def key_values_of(command: str, names: Iterable[str]) -> dict[str, Quantity]:
+    """Return the key values of a command by id: those of its own chapters if these have all the names, else all."""
+    own: list[Quantity] = []
+    for chapter in CHAPTERS:
+        if chapter.command == command:
+            own += result_rows(chapter.kind, closed=doors_of(chapter.kind)).lists.all_key_values
+    quantities = Lists((), tuple(own)).key_values(command)
+    if all(name in quantities for name in names):
+        return quantities
+    return every_quantity().key_values(command)

@@ -53,6 +53,7 @@ class Quantity(NamedTuple):
     `on_request`: the commands that print it only if it is requested by name.
     `wanted_large`: a bound on it is one from below, as on every smallest value.
     `heading`: of the key values among which it is listed for people; see `Heading`.
+    `of_book`: an approximation of the books, which people are shown where approximations are requested.
     `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
     """
 
@@ -74,6 +75,7 @@ class Quantity(NamedTuple):
     mark: str = ""
     group: str = ""
     heading: str = ""
+    of_book: bool = False
 
     @property
     def short(self) -> str:
@@ -123,6 +125,10 @@ class Quantity(NamedTuple):
             "piston speed", "ram speed"
         )
         return self._replace(text=text)
+
+    def without_guide(self) -> Quantity:
+        """Return the quantity of a machine without a crosshead guide, whose piston rod takes the side force."""
+        return self._replace(text=self.text.replace("guide force", "side force on the piston rod"))
 
     def printed_by(self, command: str, heading: str = "") -> Quantity:
         """Return it as a key value of this command and its own `commands`, below this heading unless it has one."""
@@ -246,12 +252,14 @@ class QuantityRow(NamedTuple):
     """A quantity with what computes it.
 
     of: takes the results of a command, or for a column the state at crank angles, and returns the value in SI, None
-    where there is none. unless: takes the results, and is true where the quantity adds nothing.
+    where there is none. unless: takes the results, and is true where the quantity adds nothing. repeats: takes the
+    results, and is true where people read it in another row, so that only programs and those who name it get it.
     """
 
     quantity: Quantity
     of: Formula
     unless: ResultCondition | None = None
+    repeats: ResultCondition | None = None
 
 
 class Heading(NamedTuple):
@@ -267,11 +275,15 @@ class Computed(Generic[V]):
     """
 
     def __init__(
-        self, function: Of[V] | None, quantity: Quantity, unless: ResultCondition | None = None
+        self,
+        function: Of[V] | None,
+        quantity: Quantity,
+        unless: ResultCondition | None = None,
+        repeats: ResultCondition | None = None,
     ) -> None:
         self.name, self.__doc__ = quantity.id, quantity.text
         self.function = function or (lambda one: one.answers.get(self.name))
-        self.rows: tuple[QuantityRow, ...] = (QuantityRow(quantity, self.__get__, unless),)
+        self.rows: tuple[QuantityRow, ...] = (QuantityRow(quantity, self.__get__, unless, repeats),)
 
     def __set_name__(self, owner: type, name: str) -> None:
         (row,) = self.rows
@@ -291,7 +303,12 @@ class Computed(Generic[V]):
 
 
 def key_value(
-    symbol: str, kind: str, *, unless: ResultCondition | None = None, **words: Any
+    symbol: str,
+    kind: str,
+    *,
+    unless: ResultCondition | None = None,
+    repeats: ResultCondition | None = None,
+    **words: Any,
 ) -> Callable[[Of[V]], Computed[V]]:
     """Return what makes a method a key value or column of its class; the words are those of `Quantity`.
 
@@ -300,9 +317,8 @@ def key_value(
 
     def made(function: Of[V]) -> Computed[V]:
         text = " ".join((function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
-        return Computed(
-            function, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless
-        )
+        quantity = Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words))
+        return Computed(function, quantity, unless, repeats)
 
     return made
 
@@ -317,14 +333,17 @@ def value(
     of: Formula | None = None,
     *,
     unless: ResultCondition | None = None,
+    repeats: ResultCondition | None = None,
     **words: Any,
 ) -> Computed[Any]:
     """Return a key value or column: its id is the name of the attribute, `text` the sentence that users read.
 
     of: takes the object and returns the value in SI; without it the value is in the mapping `answers` of the object,
-    by id, or there is none. words: those of `Quantity`.
+    by id, or there is none. unless, repeats: see `QuantityRow`; words: those of `Quantity`.
     """
-    return Computed(of, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless)
+    return Computed(
+        of, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless, repeats
+    )
 
 
 class ForEach:
@@ -347,6 +366,7 @@ def values_for(
     of: FormulaOfPart | None = None,
     group: Callable[[str], str] = lambda part: "",
     after: str = "",
+    repeats: ResultCondition | None = None,
     **words: Any,
 ) -> ForEach:
     """Return a key value or column of each of several parts, as `value` of one; of: takes object and part.
@@ -362,8 +382,7 @@ def values_for(
         texts = id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called)
         own = {"commands": ITS_OWN, "after": after.replace("*", part), "group": group(part)}
         quantity = Quantity(*texts, **(own | words))
-        return Computed(lambda one: answer(one, part), quantity).rows[
-            0
-        ]  # computed once, as any other
+        computed = Computed(lambda results: answer(results, part), quantity, repeats=repeats)
+        return computed.rows[0]  # computed once, as any other
 
     return ForEach(answer, tuple(row(part, *words) for part, words in parts.items()))

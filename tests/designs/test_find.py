@@ -10,11 +10,12 @@ import pytest
 from command import run
 from kurbel.arrays import Array
 from kurbel.designs.find import Solutions, find_solutions
+from kurbel.errors import NoSolutionError
 from kurbel.machine_file.source import decode, read
-from kurbel.numerics.search import lowest
+from kurbel.numerics.search import lowest, roots
 from kurbel.render.sweep_rows import picture
 from kurbel.solver.flywheel import MachineTurning
-from representative import CONFIGS
+from representative import CONFIGS, few
 
 
 def found_in(name: str, vary: str, *equations: str, **how: object) -> Solutions:
@@ -242,3 +243,48 @@ def test_an_end_of_the_range_may_fail_by_what_is_wanted() -> None:
     )
     ran = run("sweep", str(CONFIGS["triplex-pump"]), *vary)
     assert [("would empty" in line) for line in ran.stdout.splitlines()] == [False, True, False]
+
+
+SPEEDS = (15, 30, 45, 60, 75, 90, 105, 120, 150)
+STROKES = ((400, 600), (450, 700), (500, 800), (300, 900))
+ROUND_QUESTIONS = [(rpm, *span) for rpm in SPEEDS for span in STROKES]
+
+
+@pytest.mark.parametrize(
+    ("rpm", "low", "high"), few(ROUND_QUESTIONS, [(90, 400, 600), (45, 450, 700), (105, 300, 900)])
+)
+def test_round_questions_have_the_ends_of_their_range_as_solutions(
+    rpm: int, low: int, high: int
+) -> None:
+    """c_m = 2 s n at both ends and in the middle, as a person writes it: the nearest float may be beyond the end."""
+    head = "indicator: {head_end: {constant: {expansion: 2 bar, compression: 0 bar}}}"
+    origin = decode(
+        "<text>",
+        f"{{speed: {rpm} rpm, stroke: 500 mm, rod_ratio: 5, bore: 200 mm, {head}}}".encode(),
+    )
+    for stroke in (low, (low + high) / 2, high):
+        wanted = f"{stroke * rpm / 30000:.10g}"
+        found = find_solutions(origin, [f"stroke={low}:{high} mm"], [f"c_m = {wanted} m/s"]).found
+        assert [one.values[0] for one in found] == pytest.approx([stroke / 1000], rel=1e-12), wanted
+
+
+@pytest.mark.parametrize(
+    ("wanted", "having"), [("1.333333333333333 m/s", "every"), ("2 m/s", "no")]
+)
+def test_a_key_value_that_does_not_depend_on_the_key(wanted: str, having: str) -> None:
+    origin = decode("<text>", b"{speed: 50 rpm, stroke: 800 mm, rod_ratio: 5}")
+    with pytest.raises(
+        NoSolutionError,
+        match=f"{having} design has c_m = .*m/s throughout, and does not depend on rod",
+    ):
+        find_solutions(origin, ["rod_ratio=4:8"], [f"c_m = {wanted}"])
+
+
+def test_a_key_value_that_is_constant_over_a_part_of_the_range_is_one_solution() -> None:
+    places, jumps, until = roots(lambda x: np.maximum(x[:, 0] - 0.4, 0.0), 1.0)
+    assert places == pytest.approx([0.0])
+    assert until == pytest.approx([0.4], abs=1e-9)
+    assert not jumps.any()
+    places, jumps, until = roots(lambda x: np.clip(x[:, 0] - 0.4, -0.1, 0.1) - 0.1, 1.0)
+    assert places == pytest.approx([0.5], abs=1e-9)
+    assert until == pytest.approx([1.0])

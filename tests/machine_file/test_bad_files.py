@@ -61,8 +61,10 @@ TRACE = "bore: 1 m\nindicator: {{head_end: {{trace: {{file: {file}, unit: bar, a
 
 def test_nothing_that_was_built_gets_one() -> None:
     """The Cruquius engine: 144 inches; a large two-stroke diesel: 20 t; a model engine: 30,000 rpm."""
-    built = "speed: 30000 rpm\ncrank: 1 m\nrod_ratio: 5\nbore: 3658 mm\nmasses: {piston: 20 t}\n"
-    assert "beyond anything built" not in run("check", "-", text=built).output
+    largest = "rod_ratio: 5\nspeed: 10 rpm\ncrank: 1.5 m\nbore: 3658 mm\nmasses: {piston: 20 t}\n"
+    fastest = "rod_ratio: 5\nspeed: 30000 rpm\ncrank: 6 mm\nbore: 12 mm\n"
+    assert "beyond anything built" not in run("check", "-", text=largest).output
+    assert "beyond anything built" not in run("check", "-", text=fastest).output
     engine = ENGINE + "bore: 450 mm\nflywheel: {fluctuation: 1/5}\n" + STEAM
     assert "is it right?" not in run("check", "-", text=engine).output
     pump = "indicator: {head_end: {constant: {expansion: 0 bar, compression: 1600 bar}}}\n"

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from kurbel.errors import KurbelError
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.report.commands import report_of
@@ -42,3 +43,35 @@ def test_a_slot_that_ends_before_the_pin_does_is_told() -> None:
         "The pin slides as far as 360 mm from the lever's pivot, past its end at 300 mm"
     )
     assert SlottedLever(0.12, 0.24, 0.36).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("link", "refused"),
+    [
+        (0.1416, "does not reach the ram"),
+        (0.1418, "gets into line"),
+        (0.1546, "gets into line"),
+        (0.1547, ""),
+    ],
+)
+def test_a_link_that_is_long_enough(link: float, refused: str) -> None:
+    """sin θ = r/e = 0.4 at the ends of the swing, where the end of the lever is R_l √0.84 = 0.4583 m up.
+
+    The ram at h = 0.6 m is 0.1417 m above; lever and link are in line where l cos θ = h − R_l cos θ, l = 0.1547 m.
+    """
+    lengths = {"crank": 0.1, "frame": 0.25, "lever": 0.5, "ram_height": 0.6}
+    assert 0.6 - 0.5 * math.sqrt(0.84) == pytest.approx(0.14174, abs=1e-5)
+    assert 0.6 / math.sqrt(0.84) - 0.5 == pytest.approx(0.15465, abs=1e-5)
+    if not refused:
+        assert SlottedLever(**lengths, link=link).link == link
+        return
+    with pytest.raises(KurbelError, match=refused):
+        SlottedLever(**lengths, link=link)
+
+
+def test_a_link_below_the_end_of_the_lever() -> None:
+    """In the middle of the swing the end is R_l − h = 0.05 m above a ram at h = 0.45 m: there it must reach."""
+    lengths = {"crank": 0.1, "frame": 0.25, "lever": 0.5, "ram_height": 0.45}
+    assert SlottedLever(**lengths, link=0.0501).link == 0.0501
+    with pytest.raises(KurbelError, match="does not reach the ram"):
+        SlottedLever(**lengths, link=0.0499)

@@ -36,8 +36,20 @@ def test_ruler_and_compasses_give_what_the_solver_computes(name: str) -> None:
     for number in range(len(ANGLES)):
         way, parts, polar = (places(panel) for panel in picture.panels[3 * number : 3 * number + 3])
         x, c = float(state.x[number]), float(state.c[number])
-        assert (way["A"] - way["x"]).real == pytest.approx(x, abs=1e-12)
+        assert (way["A"] - way["G, x"]).real == pytest.approx(x, abs=1e-12)
         assert (way["E"] - way["C"]).real == pytest.approx(x, abs=1e-12)
+        # half a turn later the way from the other dead centre: outward the longer one (R p. 602)
+        later = case.cylinders[0].at([ANGLES[number] + 180.0])
+        back = case.cylinders[0].motion.stroke - float(later.x[0])
+        lengths = {
+            mark.figure.name.symbol: mark.figure.value for mark in picture.panels[3 * number].marks
+        }
+        assert way["D"] == pytest.approx(-way["C"], abs=1e-12)
+        assert lengths["x_D"] == pytest.approx(back, abs=1e-12)
+        assert (way["x_D"] - way["B"]).real == pytest.approx(back, abs=1e-12)
+        assert way["F"].real == way["C"].real
+        if name == "waterworks" and x > 1e-9:
+            assert lengths["G, x"] >= lengths["x_D"] * (1 - 1e-12)
         figures = {
             mark.figure.name.symbol: mark.figure.value
             for mark in picture.panels[3 * number + 1].marks
@@ -47,7 +59,7 @@ def test_ruler_and_compasses_give_what_the_solver_computes(name: str) -> None:
         assert figures["v_s"] == pytest.approx(
             v * np.sin(np.radians(ANGLES[number]) + psi[number]), abs=1e-12
         )
-        assert polar["c"] == pytest.approx(1j * c, abs=1e-12)
+        assert polar["F, c"] - polar["M"] == pytest.approx(1j * c, abs=1e-12)
         assert abs(polar["G"]) == pytest.approx(abs(figures["v_s"]), abs=1e-12)
         # the tips of both components and of v lie square to the rod
         rod = np.exp(-1j * psi[number])
@@ -55,7 +67,10 @@ def test_ruler_and_compasses_give_what_the_solver_computes(name: str) -> None:
 
 
 def test_the_parallel_through_the_foot_gives_the_velocity_of_the_ram() -> None:
-    """R Abb. 1071: c = v GH/r, F on the circle over MD, FH parallel to CG."""
+    """R Abb. 1071: c = v GH/r, F on the circle over MD, FH parallel to CG.
+
+    Largest velocities v R/(e + r) and v R/(e - r) (R 304, 305); the extreme positions touch the crank circle.
+    """
     picture, case = constructed("shaper", "construction")
     for panel, c in zip(picture.panels, case.cylinders[0].at(ANGLES).c):
         at = places(panel)
@@ -64,6 +79,15 @@ def test_the_parallel_through_the_foot_gives_the_velocity_of_the_ram() -> None:
             0.0, abs=1e-12
         )
         assert abs(at["F"] - at["D"] / 2) == pytest.approx(abs(at["D"]) / 2)
+        figures = {mark.figure.name.symbol: mark.figure.value for mark in panel.marks}
+        lever, frame = abs(at["E"] - at["D"]), abs(at["D"] - at["M"])
+        crank = abs(at["C"] - at["M"])
+        assert figures["c_1"] == pytest.approx(crank * lever / (frame + crank))
+        assert figures["c_2"] == pytest.approx(-crank * lever / (frame - crank))
+        for end in (at["A"], at["B"]):
+            assert abs(end - at["D"]) == pytest.approx(lever)
+            along = (end - at["D"]) / lever
+            assert abs(((at["M"] - at["D"]) * along.conjugate()).imag) == pytest.approx(crank)
 
 
 @pytest.mark.parametrize("name", ["waterworks", "offset-engine", "scotch-yoke-pump"])
@@ -102,7 +126,8 @@ def test_the_pump_is_laid_over_the_steam() -> None:
         for panel, pump in zip(picture.panels, (3490.0, -3710.0)):
             assert curve_of(panel, "−P_driven").y == pytest.approx(pump, rel=1e-3)
         out = picture.panels[0]
-        x, steam = curve_of(out, "η P_driving").x, curve_of(out, "η P_driving").y
+        symbol = "P_driving" if eta == 1 else "η P_driving"
+        x, steam = curve_of(out, symbol).x, curve_of(out, symbol).y
         rest = np.interp(x, curve_of(out, "−P_driven − P_b").x, curve_of(out, "−P_driven − P_b").y)
         P = convert(
             np.asarray(
@@ -143,3 +168,26 @@ def test_cranks_and_sides_add_up_to_the_turning_effort(efficiency: str) -> None:
         case.flywheel.T_max.degrees,
         case.flywheel.T_min.degrees,
     ]
+
+
+def test_reversal_of_the_piston_force_and_zero_of_the_acceleration_are_marked() -> None:
+    """R Abb. 1055 has J where the force reverses, Abb. 1050 the point where b is 0 and c largest."""
+    case = case_of("waterworks")
+    options = PictureOptions(system="si")
+    (over_stroke,) = pictures(case, ("piston-force-way",), options)
+    reversals = [
+        m.figure.at_deg for p in over_stroke.panels for m in p.marks if m.figure.name.symbol == "J"
+    ]
+    assert reversals == pytest.approx(case.cylinders[0].phi_reversal)
+    (motion,) = pictures(case, ("motion-way",), options)
+    (zero,) = [mark for mark in motion.panels[1].marks if mark.figure.name.symbol == "b = 0"]
+    assert zero.figure.at_deg == pytest.approx(case["c_max"].degrees, abs=1e-9)
+    assert zero.y == 0.0
+
+
+@pytest.mark.parametrize(("efficiency", "symbol"), [("1", "P_driving"), ("0.9", "η P_driving")])
+def test_efficiency_is_in_a_label_only_where_the_file_has_one(efficiency: str, symbol: str) -> None:
+    case = case_of("waterworks")
+    case = Case(replace(case.machine, efficiency=float(efficiency)))
+    (picture,) = pictures(case, ("piston-force-crank",), PictureOptions(system="si"))
+    assert picture.panels[0].curves[0].name.symbol == symbol

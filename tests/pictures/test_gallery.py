@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-import gallery  # docs/gallery.py
+import gallery  # tools/gallery.py
 from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.pictures.pictures import PICTURES
 

@@ -418,6 +418,18 @@ def test_the_whole_counterweight_in_each_wheel() -> None:
     assert_allclose(sorted(np.degrees(np.angle(weights)) % 360), [90 + aside, 180 - aside])
 
 
+@pytest.mark.parametrize("place", [300, -300])
+def test_the_larger_counterweight_of_both_wheels_is_the_one_shown(place: int) -> None:
+    """By the lever: of 10 kg m at 300 mm from the middle the nearer of two wheels 1.5 m apart carries 7 kg m."""
+    found = balance_of(
+        "{speed: 300 rpm, cylinders: [{name: B, crank: 300 mm, rod: infinite, axial_position: -350 mm, masses: "
+        "{reciprocating: 180 kg}}, {like: B, axial_position: 350 mm, crank_position: 90 deg}]}",
+        f"counterweights=[{{product: 10 kg m, angle: 180 deg, axial_position: {place} mm}}]",
+        "locomotive={wheel_distance: 1.5 m}",
+    )
+    assert found.counterweight_wheel == pytest.approx(7.0, rel=1e-12)
+
+
 def test_the_book_beside_the_exact() -> None:
     found = balance_of(FOUR)
     assert longest(found.book.force)[0] == pytest.approx(4 * 0.1 * 0.25, rel=1e-14)
@@ -435,3 +447,24 @@ def test_moments_about_another_place() -> None:
     """M changes by the free force times the way."""
     near, far = balance_of(FOUR).at(ANGLES), balance_of(FOUR, "moment_reference=0 mm").at(ANGLES)
     assert_allclose(far.M_x - near.M_x, 0.15 * near.F_x, atol=1e-9)
+
+
+@pytest.mark.parametrize("odd", [0.0, 1e-3])
+def test_the_smallest_circle_round_a_curve_of_even_waves(odd: float) -> None:
+    """An ellipse of the half-axes 1.5 and 0.5 about 1 + 2i, drawn twice; a small odd wave widens it by its size."""
+    waves = np.zeros((5, 1), complex)
+    waves[:, 0] = [0.5, 0.0, 1 + 2j, odd, 1.0]
+    centre, radius, _ = ClosedCurve(waves).least_circle()
+    assert centre[0] == pytest.approx(1 + 2j, abs=1.01 * odd + 1e-12)
+    assert radius[0] == pytest.approx(1.5, abs=1.01 * odd + 1e-12)
+
+
+def test_the_smallest_circle_round_a_curve_of_odd_waves_is_about_0() -> None:
+    """c(φ + 180°) = −c(φ): the farthest point and its image carry the circle."""
+    waves = np.zeros((7, 1), complex)
+    waves[:, 0] = [0.2j, 0.0, 0.1, 0.0, 1.0, 0.0, 0.3]
+    centre, radius, _ = ClosedCurve(waves).least_circle()
+    phi = np.linspace(0.0, 2 * np.pi, 100_001)
+    curve = sum(wave * np.exp(1j * number * phi) for number, wave in zip(range(-3, 4), waves[:, 0]))
+    assert centre[0] == 0
+    assert radius[0] == pytest.approx(np.abs(curve).max(), rel=1e-8)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import fixed_quad
+from scipy.special import ellipk
 
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
@@ -118,6 +119,21 @@ def test_a_bearing_between_two_throws_carries_both() -> None:
         assert np.abs(in_engine(part, phi) - wanted).max() <= 1e-12 * part.load_max.value
 
 
+def test_a_counterweight_is_shared_by_the_bearings_as_by_a_lever() -> None:
+    """0.06 kg m opposite the pin, in its plane, between bearings at 60 and 50 mm: A takes 5/11 of it, B 6/11."""
+    text = MACHINES["one"] + "counterweights: [{product: 0.06 kg m, angle: 180 deg}]\n"
+    phi = np.linspace(0.0, 720.0, 25)
+    pull = 0.06 * (60 * math.pi) ** 2
+    for part, bare, share in zip(
+        main_bearings(Case(loads(text))),
+        main_bearings(Case(loads(MACHINES["one"]))),
+        (5 / 11, 6 / 11),
+    ):
+        more = in_engine(part, phi) - in_engine(bare, phi)
+        opposite = -share * pull * np.exp(1j * np.radians(phi))
+        assert np.abs(more - opposite).max() <= 1e-9 * pull
+
+
 def test_two_rods_on_one_pin_have_half_of_it_each() -> None:
     parts = Case(loads(VEE)).bearings.parts
     assert [part.name for part in parts] == [
@@ -223,6 +239,8 @@ def test_rubbing_speeds() -> None:
     ).bearings.parts
     omega = 2 * math.pi * 200 / 60
     assert pin.rubbing_speed_max.value == pytest.approx(omega * 0.105 * 1.2, rel=1e-13)
+    # in the inner dead centre the rod turns against the crank
+    assert pin.rubbing_speed_max.degrees == pytest.approx(0.0, abs=1e-6)
     assert pin.rubbing_speed_mean == pytest.approx(omega * 0.105, rel=1e-12)
     assert A.rubbing_speed_max.value == pytest.approx(omega * 0.100, rel=1e-13)
     assert A.rubbing_speed_mean == pytest.approx(omega * 0.100, rel=1e-13)
@@ -243,3 +261,23 @@ def test_work_of_friction_is_that_of_the_energy_balance() -> None:
     assert pin.work_rubbing == work_of("crank_pin")
     assert crosshead.work_rubbing == work_of("crosshead_pin")
     assert A.work_rubbing + B.work_rubbing == pytest.approx(work_of("journals"), rel=1e-12)
+
+
+def test_work_of_friction_is_that_of_a_cycle_of_the_machine() -> None:
+    """A compressor turns twice in the cycle of the four-stroke engine beside it: its pins lose twice their own work."""
+    friction = "friction: {crank_pin: 0.05}"
+    shape = f"crank: 45 mm, rod: 150 mm, bore: 90 mm, {friction}"
+    engine = "indicator: {head_end: {otto: {intake: 0 bar, compression_ratio: 8, peak: 40 bar}}}"
+    compressor = "indicator: {head_end: {constant: {expansion: 0 bar, compression: 2 bar}}}"
+    cylinders = (
+        f"cylinders:\n  - {{name: engine, {shape}, {engine}}}\n"
+        f"  - {{name: compressor, cycle: two-stroke, {shape}, {compressor}}}\n"
+    )
+    case = Case(loads("speed: 1800 rpm\ncycle: four-stroke\n" + SHAFT + cylinders))
+    works = {part.name: part.work_rubbing for part in case.bearings.parts}
+    own = [cylinder.friction_works["crank_pin"] for cylinder in case.cylinders]
+    assert works["crank pin of engine"] == pytest.approx(own[0], rel=1e-14)
+    assert works["crank pin of compressor"] == pytest.approx(2 * own[1], rel=1e-14)
+    # S = P/cos ψ over half a turn: 2 K(λ²)
+    force = 2e5 * math.pi / 4 * 0.09**2
+    assert own[1] == pytest.approx(0.05 * 0.025 * force * 2 * ellipk(0.3**2), rel=1e-12)

@@ -62,6 +62,44 @@ def test_above_order_100_the_coupling_is_rigid() -> None:
     assert machine.delta_book == together.delta_book
 
 
+SMOOTH = [(0, 100), (60, 900), (180, 100), (240, 700), (360, 100)]
+
+
+@pytest.mark.parametrize("load", [None, Load(power=2.0), Load(slip=0.05)])
+def test_torque_of_a_stiff_coupling(load: Load | None) -> None:
+    """T = M − J₁ α, by the balance of the cranks alone: of the load and the driven inertia nothing is used."""
+    stiffness = (150 * OMEGA) ** 2 / (1 / 60.0 + 1 / 40.0)
+    coupling = Coupling(stiffness, 40.0, 20.0)
+    machine = of_points(POINTS, RPM, inertia=60.0, coupling=coupling, load=load)
+    phi = np.array([10.0, 59.0, 61.0, 140.0, 200.0, 300.0])
+    found = machine.at(phi)
+    assert found.M_coupling == pytest.approx(found.M - 60.0 * found.alpha, rel=1e-11)
+    before, after = machine.at([60.0, 60.0], within=np.array([59.0, 61.0])).M_coupling
+    assert before - after == pytest.approx(0.4 * 400, rel=1e-9)  # the jump, by J₂/(J₁ + J₂)
+    assert machine.M_coupling_max.value == pytest.approx(before, rel=1e-9)
+    assert machine.M_coupling_max.degrees == pytest.approx(60.0, abs=1e-9)
+    assert machine.amplification == 1.0
+
+
+def test_the_torque_of_a_damped_coupling_becomes_that_of_a_stiff_one() -> None:
+    """Just below order 100 what is left is the vibration after the corners of the effort, of about 1/n."""
+    stiff, elastic = (
+        of_points(
+            SMOOTH, RPM, inertia=60.0, coupling=Coupling((n * OMEGA) ** 2 * 24.0, 40.0, 2000.0)
+        )
+        for n in (120.0, 99.0)
+    )
+    assert stiff.rigid
+    assert not elastic.rigid
+    swing = stiff.M_coupling_max.value - stiff.M_coupling_min.value
+    assert elastic.M_coupling_max.value == pytest.approx(
+        stiff.M_coupling_max.value, abs=0.01 * swing
+    )
+    assert elastic.M_coupling_min.value == pytest.approx(
+        stiff.M_coupling_min.value, abs=0.01 * swing
+    )
+
+
 def test_resonance_is_named_with_its_harmonic() -> None:
     near = coupled(2.05).elastic.resonances
     assert [h.order for h in near] == [2.0]
@@ -179,3 +217,22 @@ def test_two_masses_under_a_load_over_the_speed(order: float, load: Load | None)
     assert found.omega == pytest.approx(speed[inside], abs=1e-9 * np.ptp(speed))
     assert machine.multiplier == pytest.approx(np.abs(np.linalg.eigvals(after)).max(), rel=1e-9)
     assert (machine.multiplier > 1) == (load.power == -3.0)
+
+
+@pytest.mark.parametrize("slip", [0.05, 0.02])
+def test_amplification_of_a_harmonic_under_a_load_over_the_speed(slip: float) -> None:
+    """Both equations as a linear system: −Ω² J₁ θ₁ = M − T, (−Ω² J₂ + iΩ c) θ₂ = −(−T), T = (k + iΩ d)(θ₁ − θ₂)."""
+    machine = coupled(2.05, damping=60.0, load=Load(slip=slip))
+    (near,) = [resonance for resonance in machine.elastic.resonances if resonance.order == 2.0]
+    coupling, turning = machine.machine.coupling, 2.0 * OMEGA
+    spring = coupling.stiffness + 1j * turning * coupling.damping
+    slope = machine.M_mean / (slip * OMEGA)
+    system = np.array(
+        [
+            [spring - turning**2 * 60.0, -spring],
+            [-spring, spring - turning**2 * 40.0 + 1j * turning * slope],
+        ]
+    )
+    first, second = np.linalg.solve(system, [1.0, 0.0])
+    passed = abs(spring * (first - second))
+    assert near.amplification == pytest.approx(passed / (40.0 / 100.0), rel=1e-9)

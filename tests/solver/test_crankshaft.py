@@ -8,13 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.machine.indicator import Card
 from kurbel.machine.parts import ConnectingRod, Masses
+from kurbel.machine_file import loads
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.chapters.stress import PARTS, CrankshaftStrength, places
-from kurbel.solver.shaft import weight_in_throw
+from kurbel.solver.shaft import flywheel_weight, weight_in_throw
 from machines import STEAM_CARD, constant_pressure
 from representative import few
 from shafts import body, place_at, shaft, strength
@@ -125,6 +126,11 @@ def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
             assert brute == pytest.approx(largest.value, rel=1e-4)
 
 
+SHAFT_LINES = """crankshaft: {a: 60 mm, b: 50 mm, web_distance: 30 mm, web_thickness: 15 mm, web_width: 60 mm,
+  pin_diameter: 50 mm, pin_length: 40 mm, journal_diameter: 55 mm, flywheel_mass: 500 kg, flywheel_position: 200 mm}
+"""
+
+
 @pytest.mark.parametrize(
     ("inclination", "degrees", "D", "T"),
     [
@@ -140,6 +146,21 @@ def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
 def test_direction_of_the_weight(inclination: float, degrees: float, D: float, T: float) -> None:
     """Lying, the pin stands above the shaft at 90° and the weight points from it to the shaft."""
     assert weight_in_throw(1.0, CrankAngle.of(float(degrees)), float(inclination)) == complex(D, T)
+
+
+def test_the_flywheel_hangs_downward_whichever_throw_is_beside_it() -> None:
+    """In the frame of the engine its weight is one vector at every angle, seen from the throws of both banks."""
+    each = "{crank: 45 mm, rod: 150 mm, bore: 90 mm, inclination: 45 deg}"
+    banks = "bank_angles: [0 deg, 60 deg]\n  spacing: 110 mm\n  crank_positions: [0 deg, 90 deg]"
+    machine = loads(f"{SHAFT_LINES}cylinders:\n  count: 2\n  {banks}\n  each: {each}\n")
+    phi = np.arange(0.0, 360.0, 15.0)
+    for cylinder in machine.cylinders:
+        own = phi - cylinder.crank_position
+        seen = flywheel_weight(machine, cylinder, CrankAngle.of(own))
+        in_engine = -np.conj(seen) * unit_vector(own + cylinder.bank_angle)
+        # 45° below the horizontal on the other side of the stroke line of cylinder 1, the shaft turning upward
+        downward = 500 * 9.80665 * unit_vector(-135.0)
+        assert np.abs(in_engine - downward).max() <= 1e-12 * 500 * 9.80665
 
 
 def test_largest_torque_at_a_jump_is_taken_before_it() -> None:
@@ -206,6 +227,25 @@ class TestBearings:
         assert mean_A == pytest.approx(
             pressure * 0.18 * 0.2 * 0.42 / 0.82 / (0.19 * 0.3), rel=1e-14
         )
+
+
+def test_in_the_corner_of_a_web_all_normal_stresses_add_up() -> None:
+    """A rectangle of 120 × 220 mm: thrust, and bendings across both its sides, by the handbook."""
+    D, T = 1e5, 4e4
+    corner = place_at(body(D, T), "web_A", "corner")
+    radial, tangential = (force * 0.42 / 0.82 for force in (D, T))
+    thrust = radial / (0.12 * 0.22)
+    across_thickness = 6 * radial * (0.4 - 0.17) / (0.22 * 0.12**2)
+    across_width = 6 * tangential * 0.3 / (0.12 * 0.22**2)
+    assert corner.normal == pytest.approx([thrust + across_thickness + across_width], rel=1e-12)
+
+
+def test_a_web_under_torsion_alone_is_fully_used_at_its_allowable_torsion() -> None:
+    """G: α₀ = k_b/(1.3 k_d)."""
+    allowed = {"allowable_bending": 60e6, "allowable_torsion": 40e6}
+    web = place_at(body(1e5, 4e4, **allowed), "web_A", "wide face")
+    twisted = web._replace(normal=0.0, torsion=40e6)
+    assert twisted.combined == pytest.approx(60e6, rel=1e-14)
 
 
 def test_safety_counts_dead_centre_and_cycle() -> None:

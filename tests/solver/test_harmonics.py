@@ -149,3 +149,33 @@ def test_major_orders(positions: tuple[float, ...], cycle: str, major: tuple[flo
     if len(positions) != 2:
         assert not found.machine.whole[others].any()
     assert orders_of(Machine(line[:1], speed=1.0, cycle=cycle)).major_orders is None
+
+
+@pytest.mark.parametrize(
+    ("positions", "major"),
+    [
+        ((0, 180), 2),
+        ((0, 120, 240), 3),
+        ((0, 90, 270, 180), 4),
+        ((0, 179), None),
+        ((0, 119, 240), None),
+    ],
+)
+def test_major_orders_are_those_in_which_all_cranks_agree(
+    positions: tuple[int, ...], major: int | None
+) -> None:
+    """|Σ e^{−iνβ}| is the number of cranks for ν = 2, 4, … of two at 180°; a degree off no order up to 24 has it."""
+    cylinders = tuple(steam(name=f"at {angle}", crank_position=float(angle)) for angle in positions)
+    found = orders_of(Machine(cylinders=cylinders, speed=1.0)).major_orders
+    assert found == (
+        () if major is None else tuple(float(order) for order in range(major, 25, major))
+    )
+
+
+@pytest.mark.parametrize("ratio", [0.5, 2.0])
+def test_orders_at_another_speed_are_those_of_the_machine_that_runs_so(ratio: float) -> None:
+    orders = [1.0, 2.0, 3.0, 4.0]
+    here = orders_of(Machine((steam(),), speed=1.5), orders).machine
+    there = orders_of(Machine((steam(),), speed=1.5 * ratio), orders).machine
+    size = np.abs(there.whole).max()
+    assert np.abs(here.at_speed(ratio) - there.whole).max() <= 1e-12 * size

@@ -115,7 +115,13 @@ def test_what_repeats_sooner_is_the_same_in_a_longer_cycle(turns: int) -> None:
             assert other[: len(one.value)] == pytest.approx(one.value, rel=1e-9)
             assert len(other) == times * len(one.value)
         else:
-            factor = times if id == "work_shaft" else 1 / times if id == "energy_fluctuation" else 1
+            factor = (
+                times
+                if id in ("work_shaft", "work_indicated")
+                else 1 / times
+                if id == "energy_fluctuation"
+                else 1
+            )
             assert other == pytest.approx(factor * one.value, rel=1e-9, abs=1e-9), id
     assert longer.torsion["M_vibratory"].value == pytest.approx(
         usual.torsion["M_vibratory"].value, rel=1e-9

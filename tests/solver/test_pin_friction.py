@@ -161,3 +161,32 @@ def test_each_throw_takes_its_own_friction_of_journals() -> None:
     assert works[1] > 1.2 * works[0]
     left = math.fsum(cylinder.work_left for cylinder in case.cylinders)
     assert case.flywheel.M_mean * 4 * math.pi == pytest.approx(left, rel=1e-13)
+
+
+@pytest.mark.parametrize("degrees", [90.0, 270.0])
+def test_the_rod_turns_back_from_exactly_there_on(degrees: float) -> None:
+    """dψ/dφ changes its sign there, and with it the moment in the crosshead pin: N jumps, and is that just after."""
+    before, at, after = solved(PLAIN).at([degrees - 1e-7, degrees, degrees + 1e-7]).N
+    assert at == pytest.approx(after, rel=1e-6)
+    assert abs(after - before) > 1e-3 * FORCE
+
+
+def test_rods_of_one_throw_share_what_its_counterweight_loads_the_journals_with() -> None:
+    """Two equal cylinders opposite one another, each with its whole bearings: f r |F + u ω²/2| of each, a = b."""
+    gas = "indicator: {head_end: {constant: {expansion: 9 bar, compression: 2 bar}}}"
+    shape = f"crank: 45 mm, rod: 150 mm, bore: 90 mm, {gas}"
+    each = f"{{{shape}, friction: {{journals: 0.04}}, masses: {{piston: 1.2 kg}}}}"
+    shaft = (
+        "crankshaft: {a: 55 mm, b: 55 mm, web_distance: 30 mm, web_thickness: 15 mm, web_width: 60 mm,\n"
+        "  pin_diameter: 50 mm, pin_length: 40 mm, journal_diameter: 60 mm, journal_length: 24 mm}\n"
+    )
+    vee = f"cylinders:\n  count: 2\n  bank_angles: [0 deg, 90 deg]\n  each: {each}\n"
+    weight = "counterweights: [{product: 0.06 kg m, angle: 180 deg}]\n"
+    case = Case(loads("speed: 1500 rpm\n" + shaft + vee + weight))
+    pull = 0.06 * (50 * math.pi) ** 2 / 2
+    for cylinder in case.cylinders:
+        state = cylinder.at([15.0, 80.0, 200.0, 310.0])
+        assert state.rubbing is not None
+        radial, tangential = on_pin(state.without_pin_friction)
+        loads_of_journals = np.hypot(radial + pull, tangential)
+        assert state.rubbing.journals == pytest.approx(0.04 * 0.030 * loads_of_journals, rel=1e-12)

@@ -45,6 +45,16 @@ def test_rod_between_the_pistons_carries_what_the_tandem_piston_does() -> None:
     )
 
 
+def test_a_piston_by_a_lever_is_not_on_the_rod_between_the_pistons() -> None:
+    """Neither its water nor its 50 kg pass through the rod that carries the pump in tandem of 80 kg."""
+    water = f"{CHAMBER % ('head_end', 5)}, {CHAMBER % ('crank_end', 3)}"
+    pumps = f"{PUMP % ('1', water)}, {(PUMP % ('0.5', water)).replace('pump', 'air pump')}"
+    masses = MASSES.replace("80 kg]", "80 kg, 50 kg]")
+    state = kurbel.solve(f"{STEAM}tandem: [{pumps}]\n{masses}").cylinders[0].at([40.0, 250.0])
+    expected = np.array([OUT, BACK]) / 0.8 - 80 * state.b + 80 * 9.80665 * 0.5
+    assert state.P_between == pytest.approx(expected, rel=1e-13)
+
+
 def test_work_power_and_mean_pressure_of_every_piston() -> None:
     steam, pump = kurbel.solve(engine()).cylinders[0].pistons
     assert pump.work == pytest.approx(OUT - BACK, rel=1e-13)

@@ -13,7 +13,7 @@ from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.chain import Chain, Modes, holzer_at, response, row_of_joins
-from kurbel.solver.chapters.torsion import ShaftVibration
+from kurbel.solver.chapters.torsion import ShaftVibration, Vibration
 from representative import CONFIGS, few
 
 ENDS = {"": 0, "before": 1, "after": 1, "both": 2}
@@ -236,6 +236,28 @@ def test_the_damping_takes_what_the_torques_give() -> None:
         assert power == pytest.approx(vibration.loss[0], rel=1e-12)
 
 
+def test_away_from_the_working_speed_the_load_takes_the_same_mean_torque() -> None:
+    """A load of slip s has the slope M/(s ω_n) at ω_n, and ω_n/ω times that at ω: two masses as a linear system."""
+    found = Case(machine_of(Load(slip=0.05))).torsion
+    acting, ratio = found.vibration.acting, 1.5
+    omega = 2 * math.pi * ratio
+    vibration = Vibration(found.vibration.chain, found.vibration.line, acting, np.array([omega]))
+    mean = (60 * 500 + 120 * 300 + 60 * 400 + 120 * 400) / 360
+    slope = mean / (0.05 * 2 * math.pi) / ratio
+    stiffness = (2.4 * 2 * math.pi) ** 2 / (1 / 60.0 + 1 / 40.0)
+    for index, order in enumerate(acting.orders.tolist()):
+        turning = order * omega
+        spring = stiffness + 60.0j * turning
+        system = np.array(
+            [
+                [spring - turning**2 * 60.0, -spring],
+                [-spring, spring - turning**2 * 40.0 + 1j * turning * slope],
+            ]
+        )
+        angles = np.linalg.solve(system, vibration.driving[:, 0, index])
+        assert vibration.angles[:, 0, index] == pytest.approx(angles, rel=1e-9, abs=1e-15)
+
+
 def shaft(effort: Any, speed: float, *parts: Any, **more: Any) -> ShaftVibration:
     return Case(Machine((), effort=effort, speed=speed, shaft=line_of(parts), **more)).torsion
 
@@ -296,6 +318,23 @@ def test_a_gear_is_the_chain_referred_to_one_shaft() -> None:
     assert one.M_vibratory == pytest.approx(other.M_vibratory / 2.5, rel=1e-12)
     assert one.M_shaft_mean == pytest.approx(4.0, rel=1e-14)
     assert one.tau_vibratory == pytest.approx(16 * one.M_vibratory / (math.pi * 0.03**3), rel=1e-14)
+
+
+def test_the_stress_of_a_stepped_piece_is_that_of_its_thinnest_section() -> None:
+    """A hollow section may be wider and yet weaker: π (d⁴ − d_i⁴)/(16 d) is least, wherever it stands."""
+    effort = Harmonics(10.0, ((1.0, 3.0, 2.0), (3.0, 1.0, -2.0)))
+    sections = [
+        ShaftPart(diameter=0.05, length=0.3, density=0.0, loss_factor=0.01),
+        ShaftPart(diameter=0.045, length=0.2, density=0.0),
+        ShaftPart(diameter=0.06, bore=0.055, length=0.1, density=0.0),
+    ]
+    least = math.pi * (0.06**4 - 0.055**4) / (16 * 0.06)
+    assert least < math.pi * 0.045**3 / 16
+    for turned in (sections, sections[::-1], [sections[0], sections[2], sections[1]]):
+        piece = shaft(
+            effort, 10.0, ShaftPart(inertia=2.0), *turned, ShaftPart(inertia=0.4)
+        ).segments[0]
+        assert piece.tau_vibratory == pytest.approx(piece.M_vibratory / least, rel=1e-14)
 
 
 def test_the_mean_torque_goes_to_the_load() -> None:

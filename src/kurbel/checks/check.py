@@ -8,9 +8,9 @@ from typing import NamedTuple
 from kurbel.checks.limits import CheckEntry, compared_entries
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
-from kurbel.machine import Machine, firings
+from kurbel.machine import Machine
+from kurbel.machine.firing import firings
 from kurbel.machine.several import intervals
-from kurbel.machine.turning import Harmonics
 from kurbel.notes.left_out import (
     balance_left_out,
     missing,
@@ -19,10 +19,9 @@ from kurbel.notes.left_out import (
     turning_stages,
 )
 from kurbel.notes.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
-from kurbel.report.delivery import delivery_left_out, delivery_warnings
-from kurbel.report.torsion import torsion_left_out, torsion_warnings
 from kurbel.solver.case import Case
-from kurbel.solver.shaft import shaft_obstacle
+from kurbel.solver.drive import any_of
+from kurbel.solver.forces import CylinderForces
 from kurbel.tables.tables import LeftOut, grouped, together
 
 _EVEN = 0.5
@@ -179,10 +178,8 @@ def _turning_entries(machine: Machine) -> Iterator[CheckEntry]:
     yield from _stages(turning_stages(machine))
     if load is None:
         text = "constant"
-    elif isinstance(load.diagram, Harmonics):
-        text = f"{len(load.diagram.terms)} harmonics"
     elif load.diagram:
-        text = f"a diagram of {len(load.diagram.angles)} points"
+        text = load.diagram.size
     else:
         text = (
             f"slip {load.slip:g}"
@@ -198,6 +195,8 @@ def _crankshaft_entries(case: Case) -> Iterator[CheckEntry]:
         return
     for text in as_far_as_solved(bearing_warnings(case), "bearings"):
         yield CheckEntry("bearings", text, "warning", path)
+    from kurbel.solver.shaft import shaft_obstacle
+
     if not shaft_obstacle(machine):
         yield CheckEntry("computed", "loads on pins and main bearings")
     if machine.strength_obstacle:
@@ -232,6 +231,8 @@ def _shaft_entries(case: Case) -> Iterator[CheckEntry]:
     shaft, path = case.machine.shaft, ("shaft",)
     if shaft is None and case.machine.coupling is None:
         return
+    from kurbel.report.torsion import torsion_left_out, torsion_warnings
+
     for text in as_far_as_solved(torsion_warnings(case), "torsion"):
         yield CheckEntry("torsion", text, "warning")
     if shaft is None:
@@ -248,9 +249,20 @@ def _shaft_entries(case: Case) -> Iterator[CheckEntry]:
         )
 
 
+def _with_compressor(forces: CylinderForces) -> bool:
+    chambers = (chamber for gas in forces.drive.gas for chamber in gas.piston.chambers.values())
+    return any(chamber.compresses for chamber in chambers)
+
+
 def _delivery_entries(case: Case) -> Iterator[CheckEntry]:
     """Yield what `kurbel delivery` computes of a machine with pumps or compressors, or why it cannot."""
+    if not any(
+        any_of(forces.drive.pumping) or _with_compressor(forces) for forces in case.cylinders
+    ):
+        return
     with suppress(KurbelError):  # nothing is delivered
+        from kurbel.report.delivery import delivery_left_out, delivery_warnings
+
         found = case.delivery
         try:
             yield from [

@@ -14,8 +14,8 @@ from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
-from kurbel.quantities import every_quantity
-from kurbel.quantity import NOISE_POWER, Quantity, by_id, called
+from kurbel.quantities import KEY_VALUES, key_values_of
+from kurbel.quantity import NOISE_POWER, Quantity, called
 from kurbel.report.commands import COMMANDS, subjects_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame, PlaceRow, Places, Subject, report_on, too_large
@@ -60,7 +60,7 @@ def judged(case: Case) -> Iterator[CheckEntry]:
 
     Values that are equal to nine digits are compared once.
     """
-    machine, declared = case.machine, by_id(*every_quantity().all_key_values)
+    machine, declared = case.machine, KEY_VALUES
     figures = [("limits", *limit) for limit in machine.limits] + [
         ("expect", *one) for one in machine.expect
     ]
@@ -193,9 +193,10 @@ def holders(case: Case, name: str) -> list[Holder]:
 
     scope, id = scoped(name)
     cylinders = [cylinder.name for cylinder in case.machine.cylinders]
-    first, *others = every_quantity().commands_of(id)
+    commands = KEY_VALUES.commands_of(id)
+    first = next(commands)
     # what the only cylinder does not have, the machine does not have
-    whole = [one for one in others if one == "flywheel"] if scope or len(cylinders) != 1 else []
+    whole = [one for one in commands if one == "flywheel"] if scope or len(cylinders) != 1 else []
     of_machine: list[Holder] = []
     for command in (first, *whole):
         own = []
@@ -235,11 +236,9 @@ def cases_report(
     base: the machine as it is without them; names: ids or symbols of the key values. Raises UsageError for a name that
     is none, and if no case has any.
     """
-    declared = every_quantity().key_values(command)
-    known = {
-        name: called(name, declared.values())
-        for name in names or COMMANDS[command].in_cases.split()
-    }
+    wanted = names or COMMANDS[command].in_cases.split()
+    declared = key_values_of(command, wanted)
+    known = {name: called(name, declared.values()) for name in wanted}
     for name in (name for name, ids in known.items() if not ids):
         near = did_you_mean(name, tuple(declared))
         raise UsageError(

@@ -4,7 +4,7 @@ import math
 import os
 import sys
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from io import StringIO
 from time import monotonic
@@ -48,11 +48,23 @@ def exit_statuses(command: str = "") -> str:
     return "Exit status: " + "; ".join(f"{status} {_MEANINGS[status]}" for status in listed)
 
 
-class _Kurbel(click.Group):
+class Kurbel(click.Group):
     """The group, which ends every run with a message instead of a traceback."""
+
+    door: Callable[[str], object]
+    """Imports the module of a command, which adds it; set by `kurbel.cli`."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name in COMMANDS and cmd_name not in self.commands:
+            self.door(cmd_name)
+        return super().get_command(ctx, cmd_name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(command.word, command.summary) for command in COMMANDS.values()])
 
     def add_command(self, cmd: click.Command, name: str | None = None) -> None:
         super().add_command(cmd, name)
@@ -175,7 +187,7 @@ class ProgressLine:
 
 
 @click.group(
-    cls=_Kurbel,
+    cls=Kurbel,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=exit_statuses(),
 )

@@ -10,7 +10,7 @@ import click
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
-from kurbel.quantity import Lists, ambiguity, called, rejoined_names
+from kurbel.quantity import Lists, ambiguity
 from kurbel.render import FORMATS, LAYOUTS, Look
 from kurbel.render.formats import Output
 
@@ -93,11 +93,11 @@ def words(text: str) -> tuple[str, ...]:
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
-    named = words(text)
-    known = [column for column in _quantities().all_columns if column.commands]
+    from kurbel.quantities import COLUMNS
+
     ids = []
-    for name in rejoined_names(named, known):
-        found = called(name, known)
+    for name in COLUMNS.names_of(words(text)):
+        found = COLUMNS.ids_of(name)
         if wrong := ambiguity(name, found):
             raise click.BadParameter(wrong)
         ids.append(found[0] if found else name)  # the report checks whether this machine has it
@@ -106,12 +106,13 @@ def columns(text: str) -> tuple[str, ...]:
 
 def key_values(text: str) -> tuple[str, ...]:
     """Return names of key values separated by commas or blanks, in the order given; a name may have blanks itself."""
-    known = _quantities().all_key_values
+    from kurbel.quantities import KEY_VALUES
+
     names = list[str]()
     for piece in words(text):
         parts = piece.split()
         are_names = all(
-            called(part.rpartition(".")[2], known) for part in parts
+            KEY_VALUES.ids_of(part.rpartition(".")[2]) for part in parts
         )  # without their scopes
         names += parts if are_names else [piece]
     return tuple(names)

@@ -1,11 +1,10 @@
-"""The commands that report on a machine, made from the rows of `COMMANDS`."""
+"""The commands that report on a machine, each made from its row of `COMMANDS`."""
 
 from collections.abc import Callable
 from typing import Any
 
 import click
 
-from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
     Command,
     CommandWithKeyValues,
@@ -25,7 +24,6 @@ from kurbel.cli.options import (
 )
 from kurbel.declared.unit_systems import messages_in
 from kurbel.render.formats import Output
-from kurbel.report.commands import REPORTS
 from kurbel.report.commands import Command as Row
 
 _OF_EVERY = "Key values are exact, whichever rows are printed. FILE may be - for standard input."
@@ -92,7 +90,7 @@ _OWN = {
 """Options beyond those of every command; the report gets them by name, but for those that `print_report` has."""
 
 
-def _command(row: Row) -> click.Command:
+def command_of(row: Row) -> click.Command:
     """Return the command of a row, with FILE and the options that its report needs."""
 
     def run(units: str | None, output: Output, **options: Any) -> None:
@@ -111,7 +109,3 @@ def _command(row: Row) -> click.Command:
     )
     text = f"{row.of.__doc__}\n\n    {_OF_EVERY}"
     return click.command(row.word, cls=CommandWithKeyValues, help=text)(with_options(run))
-
-
-for _row in REPORTS:
-    kurbel.add_command(_command(_row))

@@ -5,11 +5,10 @@ from collections.abc import Callable, Iterable, Sequence
 import click
 from click.core import ParameterSource
 
-from kurbel.checks.limits import cases_report
 from kurbel.cli.group import ProgressLine
 from kurbel.cli.options import UncertaintyTexts
 from kurbel.errors import UsageError
-from kurbel.machine import Machine, of_cycle
+from kurbel.machine import Machine
 from kurbel.machine_file import load
 from kurbel.machine_file.reader import load_cases
 from kurbel.render.formats import Output
@@ -110,10 +109,14 @@ def print_report(
 
     case = case_of(file, case_name, overrides, output.file_name)
     if cases:
+        from kurbel.checks.limits import cases_report
+
         chosen = [one.id for one in choices_in(names, command, ())] if names else columns
         report = cases_report(case.machine, cases_of(case.machine), command, units, chosen)
     else:
         if cycle is not None:
+            from kurbel.machine.one_cycle import of_cycle
+
             case = Case(of_cycle(case.machine, cycle))
         functions = COMMANDS[command].functions
         end = functions.end(case)

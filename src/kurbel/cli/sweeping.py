@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import closing
 
 import click
@@ -11,6 +11,7 @@ from kurbel.cli.group import ProgressLine, to_stderr
 from kurbel.cli.options import format_of
 from kurbel.designs.answers import Design, Head
 from kurbel.designs.chosen import (
+    RowCondition,
     column_summaries,
     pareto_front,
     read_aim,
@@ -29,13 +30,13 @@ from kurbel.render import Look
 from kurbel.render.drawing import check_file, draw_output
 from kurbel.render.output import refuse_overwriting, write_out
 from kurbel.render.sweep_rows import (
-    Kept,
+    NOTHING_WRITTEN,
     Titles,
     as_json,
     as_rows,
-    kept_rows,
     picture,
     remarks,
+    rows_written_before,
     write_rows,
 )
 
@@ -79,13 +80,12 @@ def run_sweep(
 ) -> None:
     """Compute and write the rows: the options of the command. Raises UsageError for those that do not go together."""
     written = format_of(format, file_name, _SUFFIXES, comma)
-    named, for_people, parquet = (
-        file_name not in (None, "-"),
-        written in ("table", "markdown"),
-        written == "parquet",
-    )
-    resumable = named and written in _LINES and not (sort or pareto or summarised)
-    for wrong, message in (
+    to_file = file_name not in (None, "-")
+    for_people = written in ("table", "markdown")
+    parquet = written == "parquet"
+    in_order = not (sort or pareto or summarised)
+    resumable = to_file and written in _LINES and in_order
+    refused = (
         (not (vary or cases), "Missing option '--vary' (the values to vary); or give --cases."),
         (cases and case_name, "--cases has every load case, --case one; leave one of them out."),
         (top and not sort, "--top N takes the first rows of --sort ID; give --sort too."),
@@ -93,18 +93,22 @@ def run_sweep(
             resume and not resumable,
             "--resume goes on in csv or json lines, rows in order; give --output FILE.csv.",
         ),
-        (parquet and not named, "Parquet is a file; give --output FILE.parquet."),
+        (parquet and not to_file, "Parquet is a file; give --output FILE.parquet."),
         (
             summarised and (shard or parquet),
             "--summary is of all rows, as text; no --shard, no parquet.",
         ),
         (dask and jobs, "give only one of --dask and --jobs."),
-    ):
-        if wrong:
+    )
+    for is_wrong, message in refused:
+        if is_wrong:
             raise click.UsageError(message)
     refuse_overwriting(file_name, (file,))
+
+    # the sweep, and which of its rows are wanted
     origin = source.read(file)._replace(case=case_name).set_over(overrides)
-    axes, most = tuple(map(read_axis, vary)), None if yes else MOST_ROWS
+    axes = tuple(map(read_axis, vary))
+    most_rows = None if yes else MOST_ROWS
     system = units or ("metric" if for_people else "si")
     sweep = Sweep(
         Spec(
@@ -113,7 +117,7 @@ def run_sweep(
             side_by_side,
             sample,
             seed,
-            most,
+            most_rows,
             cases,
             columns or (),
             with_angles,
@@ -121,45 +125,70 @@ def run_sweep(
         )
     )
     rows = range(sweep.rows) if shard is None else rows_of_shard(shard, sweep.rows)
-    every = (*sweep.heads, *map(Head, sweep.texts))
-    kept_if = [read_condition(condition, every) for condition in conditions]
-    aims = [read_aim(one, every, "--pareto") for one in pareto or ()]
-    order = None if sort is None else read_aim(sort, every, "--sort")
-    shown = (
-        sweep.shown if for_people else [(one.id, place) for place, one in enumerate(sweep.heads)]
-    )
-    names = tuple((name, sweep.heads[place].unit) for name, place in shown)
+    columns_to_choose_by = (*sweep.heads, *map(Head, sweep.texts))
+    row_conditions = [read_condition(condition, columns_to_choose_by) for condition in conditions]
+    aims = [read_aim(aim, columns_to_choose_by, "--pareto") for aim in pareto or ()]
+    order = None if sort is None else read_aim(sort, columns_to_choose_by, "--sort")
+
+    # the columns that are written
+    if for_people:
+        shown = sweep.shown
+    else:
+        shown = [(head.id, place) for place, head in enumerate(sweep.heads)]
+    names = tuple((name, sweep.heads[index].unit) for name, index in shown)
     titles = Titles(names, sweep.texts, types=sweep.types() if parquet else ())
-    titles = Titles(summary_heads(sweep.heads), row="column") if summarised else titles
+    if summarised:
+        titles = Titles(summary_heads(sweep.heads), row="column")
     look = Look(written, comma=comma, digits=digits)
-    headed, kept = rows.start == 0, Kept()
+
+    # rows that an earlier run has written
+    written_before = NOTHING_WRITTEN
     if resume:
-        kept, rows = kept_rows(file_name or "", sweep, titles, look, rows, kept_if)
-        headed = headed and not any(kept)
+        written_before, rows = rows_written_before(
+            file_name or "", sweep, titles, look, rows, row_conditions
+        )
+    headed = rows.start == 0 and written_before == NOTHING_WRITTEN
 
     jobs = jobs or (1 if shard else likely_jobs(len(rows)))
-    on_terminal = sys.stdout and sys.stdout.isatty()
+    on_terminal = sys.stdout is not None and sys.stdout.isatty()
+    rows_show_progress = on_terminal and not file_name and not for_people
     with closing(computed_rows(sweep, rows, jobs, dask, to_stderr)) as computed:
-        found: Iterable[Design] = computed
-        if file_name or for_people or not on_terminal:  # else the rows themselves show the progress
-            found = ProgressLine("sweep").counted(found, "designs", len(rows))
-        found = (row for row in found if all(one.holds(row) for one in kept_if))
-        found = pareto_front(found, aims) if aims else found
-        found = sorted(found, key=order.of)[:top] if order else found
+        designs: Iterable[Design] = computed
+        if not rows_show_progress:
+            designs = ProgressLine("sweep").counted(designs, "designs", len(rows))
+        designs = (row for row in designs if _holds_all(row, row_conditions))
+        if aims:
+            designs = pareto_front(designs, aims)
+        if order:
+            designs = sorted(designs, key=order.of)[:top]
         if summarised:
-            found = column_summaries(found, sweep.heads)
+            designs = column_summaries(designs, sweep.heads)
         elif for_people:
-            found = (
-                row._replace(values=tuple(row.values[place] for _, place in shown)) for row in found
-            )
-        way_on = "; run again with --resume to continue" * resumable
+            designs = (_with_columns(row, shown) for row in designs)
+        advice = "; run again with --resume to continue" if resumable else ""
         write_rows(
-            found, titles, look, file_name, lambda left: to_stderr(left + way_on), headed, kept
+            designs,
+            titles,
+            look,
+            file_name,
+            lambda what_is_left: to_stderr(what_is_left + advice),
+            headed,
+            written_before,
         )
-    if not (columns or named or summarised) and for_people and on_terminal:
+    all_columns = not (columns or to_file or summarised)
+    if all_columns and for_people and on_terminal:
         to_stderr(
             f"{len(names)} columns; '--columns ID,ID' prints fewer, '-o rows.csv' writes a file"
         )
+
+
+def _holds_all(row: Design, conditions: Sequence[RowCondition]) -> bool:
+    return all(condition.holds(row) for condition in conditions)
+
+
+def _with_columns(row: Design, shown: Sequence[tuple[str, int]]) -> Design:
+    """Return a row with the values of the columns that are shown."""
+    return row._replace(values=tuple(row.values[index] for _, index in shown))
 
 
 # find
@@ -188,15 +217,16 @@ def run_find(
     digits: int | None,
 ) -> None:
     """Search, and print, draw or write what is found: the options of the command. Raises KurbelError."""
-    for wrong, message in (
+    refused = (
         (write and case_name, "--write prints FILE; leave --case out."),
         (write and format, "--write prints FILE; leave --format out."),
         (take and not write, "--take chooses the solution for --write; give --write too."),
         (plot and write, "--plot draws; leave --write out."),
         (plot and format, "--plot draws; leave --format out."),
         (plot and len(vary) > 1, "--plot draws a key value over one key, and two are varied."),
-    ):
-        if wrong:
+    )
+    for is_wrong, message in refused:
+        if is_wrong:
             raise click.UsageError(message)
     if plot and file_name:
         check_file(file_name)
@@ -204,44 +234,47 @@ def run_find(
     refuse_overwriting(file_name, (file,))
     origin = source.read(file)._replace(case=case_name).set_over(overrides)
     with ProgressLine("find") as progress:
-        found = found_in(origin, vary, equations, least, greatest, conditions, progress)
+        solutions = found_in(origin, vary, equations, least, greatest, conditions, progress)
     if write:
-        write_out([_with_values(origin, found, _taken(found, take))], file_name, "utf-8")
+        solution = _solution_to_write(solutions, take)
+        write_out([_with_values(origin, solutions, solution)], file_name, "utf-8")
         return
+
     system = units or ("si" if written in ("csv", "json") else "metric")
     if plot:
-        draw_output([picture(found, system)], Look(comma=comma, digits=digits), file_name)
+        draw_output([picture(solutions, system)], Look(comma=comma, digits=digits), file_name)
     elif written == "json":
-        text = json.dumps(as_json(found), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+        text = json.dumps(as_json(solutions), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
         write_out([text], file_name, "utf-8")
     else:
-        look = Look(written, comma=comma, digits=digits or (None if written == "csv" else _DIGITS))
-        titles, rows = as_rows(found, system)
+        default_digits = None if written == "csv" else _DIGITS
+        look = Look(written, comma=comma, digits=digits or default_digits)
+        titles, rows = as_rows(solutions, system)
         write_rows(rows, titles, look, file_name, to_stderr)
-    for remark in remarks(found):
+    for remark in remarks(solutions):
         to_stderr(remark)
 
 
-def _taken(found: Solutions, take: int | None) -> Solution:
+def _solution_to_write(solutions: Solutions, take: int | None) -> Solution:
     """Return the solution that is written. Raises click.UsageError where several are found, or none of this number."""
-    count = len(found.found)
+    count = len(solutions.found)
     if count > 1 and not take:
-        each = "; ".join(
-            ", ".join(
-                f"{key.key} = {key.written(value, 9)}"
-                for key, value in zip(found.varied, one.values)
-            )
-            for one in found.found
-        )
-        raise click.UsageError(f"--write: {count} solutions; choose one by --take N: {each}")
+        choices = "; ".join(_in_words(solutions, solution) for solution in solutions.found)
+        raise click.UsageError(f"--write: {count} solutions; choose one by --take N: {choices}")
     if take and take > count:
         raise click.UsageError(f"--take {take}: there {'are' if count > 1 else 'is'} {count}.")
-    return found.found[(take or 1) - 1]
+    return solutions.found[(take or 1) - 1]
 
 
-def _with_values(origin: Origin, found: Solutions, one: Solution) -> str:
+def _in_words(solutions: Solutions, solution: Solution) -> str:
+    """Return the values of the varied keys, as in `bore = 450 mm, stroke = 600 mm`."""
+    pairs = zip(solutions.varied, solution.values)
+    return ", ".join(f"{varied.key} = {varied.written(value, 9)}" for varied, value in pairs)
+
+
+def _with_values(origin: Origin, solutions: Solutions, solution: Solution) -> str:
     """Return the text of the machine file with what was set over it, and what was found."""
-    values = dict(text.split("=", 1) for text in origin.overrides)
-    for key, value in zip(found.varied, one.values):
-        values[key.key] = f"{key.in_unit(value)!r} {key.unit}".rstrip()
-    return rewritten(origin.text, values)
+    texts = dict(text.split("=", 1) for text in origin.overrides)
+    for varied, value in zip(solutions.varied, solution.values):
+        texts[varied.key] = f"{varied.in_unit(value)!r} {varied.unit}".rstrip()
+    return rewritten(origin.text, texts)

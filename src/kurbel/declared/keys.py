@@ -39,6 +39,7 @@ class Key(NamedTuple):
     and if that one is required, one of the two is. needs: a key that must be given with it; or_else: what to write
     where that one is not known. also: other words that people try for it. attribute: of the record, which has the
     value; '' for a key that only determines others: `gives` takes the values by key and returns these attributes.
+    usual: the rule of thumb for its size, with its source.
     """
 
     form: Form
@@ -53,12 +54,21 @@ class Key(NamedTuple):
     also: tuple[str, ...] = ()
     attribute: str = ""
     gives: Callable[[ValuesByKey], dict[str, object]] | None = None
+    usual: str = ""
 
     @property
     def description(self) -> str:
         """What an editor shows."""
-        symbol = f" ({self.symbol})" if self.symbol else ""
-        return f"{self.text}{symbol}" + (f"; absent: {self.absent}" if self.absent else "")
+        text = f"{self.text} ({self.symbol})" if self.symbol else self.text
+        if self.usual:
+            text = f"{text}; usual: {self.usual}"
+        return f"{text}; absent: {self.absent}" if self.absent else text
+
+    @property
+    def written(self) -> str:
+        """How its value is written: as the form says, with the example of the key."""
+        form = self.form
+        return form.written.replace(form.example, self.example) if self.example else form.written
 
     def line(self, name: str) -> str:
         """Return a line of a file that gives it, such as `bore: 450 mm`; '' if it takes more than one line."""
@@ -171,6 +181,8 @@ class Record:
     """
 
     KEYS: ClassVar[Keys] = {}
+    UNWRITTEN: ClassVar[Mapping[str, str]] = {}
+    """Words that people try for what no key describes -> what to write instead."""
     __dataclass_fields__: ClassVar[dict[str, Field[object]]]
     __signature__: ClassVar[Signature]
 

@@ -44,7 +44,7 @@ _TORQUES = f"{_FORCES} * {_LENGTHS}"
 
 KINDS = {
     "length": Kind(1e-9, 1e9, _LENGTHS, "m", ("mm", "m"), "mm", "in", "450 mm"),
-    "area": Kind(1e-18, 1e18, _AREAS, "m^2", "cm^2", "cm^2", "in^2"),
+    "area": Kind(1e-18, 1e18, _AREAS, "m^2", "cm^2", "cm^2", "in^2", "1500 cm2"),
     "mass": Kind(
         1e-12,
         1e18,
@@ -56,7 +56,7 @@ KINDS = {
         "120 kg",
     ),
     "force": Kind(
-        0, 1e18, f"{_FORCES}; long tonf, short tonf", "N", ("N", "kN", "MN"), "kgf", "lbf"
+        0, 1e18, f"{_FORCES}; long tonf, short tonf", "N", ("N", "kN", "MN"), "kgf", "lbf", "5 kN"
     ),
     "pressure": Kind(
         0,
@@ -103,15 +103,25 @@ KINDS = {
         ("N m", "kN m"),
         "kgf m",
         "lbf ft",
+        "1200 N m",
     ),
     "energy": Kind(
-        0, 1e18, f"J, kJ, MJ; {_TORQUES}; Nm", "J", ("J", "kJ", "MJ"), "kgf m", "lbf ft"
+        0, 1e18, f"J, kJ, MJ; {_TORQUES}; Nm", "J", ("J", "kJ", "MJ"), "kgf m", "lbf ft", "20 kJ"
     ),
-    "power": Kind(0, 1e18, "W, kW, MW, PS, hp, kgf m/s", "W", ("W", "kW", "MW"), "PS", "hp"),
+    "power": Kind(
+        0, 1e18, "W, kW, MW, PS, hp, kgf m/s", "W", ("W", "kW", "MW"), "PS", "hp", "25 kW"
+    ),
     "inertia": Kind(
-        1e-18, 1e18, f"{_MASSES} * {_AREAS}; lbf in s2, lbf ft s2", "kg m^2", imperial="lb ft^2"
+        1e-18,
+        1e18,
+        f"{_MASSES} * {_AREAS}; lbf in s2, lbf ft s2",
+        "kg m^2",
+        imperial="lb ft^2",
+        written="800 kg m2",
     ),
-    "unbalance": Kind(1e-15, 1e18, f"{_MASSES}, mg * {_LENGTHS}", "kg m", imperial="lb in"),
+    "unbalance": Kind(
+        1e-15, 1e18, f"{_MASSES}, mg * {_LENGTHS}", "kg m", imperial="lb in", written="40 kg m"
+    ),
     "gd2": Kind(
         1e-18,
         1e18,
@@ -120,7 +130,7 @@ KINDS = {
         None,
         "kgf m^2",
         "lb ft^2",
-        "10 kgf m2",
+        "3200 kgf m2",
     ),
     "stiffness": Kind(
         1e-12,
@@ -128,6 +138,7 @@ KINDS = {
         f"{_FORCES} * m/rad, mm/rad, ft/rad, m/deg; Nm/rad, kNm/rad, Nm/deg",
         "N m/rad",
         imperial="lbf ft/rad",
+        written="2000 kN m/rad",
     ),
     "damping": Kind(
         1e-15,
@@ -135,9 +146,10 @@ KINDS = {
         f"{_FORCES} * m s/rad; Nm s/rad, kNm s/rad, N m s, Nm s, kN m s, lbf ft s/rad",
         "N m s/rad",
         imperial="lbf ft s/rad",
+        written="500 N m s/rad",
     ),
     "volume": Kind(
-        1e-27, 1e27, "m3, dm3, l, cm3, mm3, in3", "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "10 cm3"
+        1e-27, 1e27, "m3, dm3, l, cm3, mm3, in3", "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "60 dm3"
     ),
     "volume_rise": Kind(
         0, 1e27, "m3, cm3, in3 / deg, rad", "m^3/deg", "cm^3/deg", "cm^3/deg", "in^3/deg"
@@ -161,7 +173,9 @@ KINDS = {
         "kgf m/s/cm^2",
         "psi ft/s",
     ),
-    "density": Kind(1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3"),
+    "density": Kind(
+        1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3", written="1000 kg/m3"
+    ),
     "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", written="20 °C"),
     "flow": Kind(
         0,
@@ -176,7 +190,7 @@ KINDS = {
     "molar_mass": Kind(
         1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"
     ),
-    "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K"),
+    "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K", written="287 J/kg K"),
     "spring": Kind(
         1e-15,
         1e3,
@@ -185,7 +199,7 @@ KINDS = {
         "mm/bar",
         "mm/at",
         "in/psi",
-        "10 mm/at",
+        "6 mm/at",
     ),
     "ratio": Kind(1e-15, 1e15, "", ""),
 }

@@ -24,12 +24,11 @@ from kurbel.machine.indicator import Card
 from kurbel.machine.origin import Origin
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of, size_of
-from kurbel.quantities import every_quantity
-from kurbel.quantity import Quantity, ambiguity, called, in_sentences, rejoined_names
+from kurbel.quantities import KEY_VALUES, every_quantity
+from kurbel.quantity import Quantity, ambiguity, in_sentences
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Subject, too_large
-from kurbel.traces.correct import Trace
 
 _WHOLE = "whole machine"
 """The whole machine, as a report names it."""
@@ -109,8 +108,9 @@ def requested_answers(
     case = Case(machine)
     once: dict[tuple[str, str], list[Answer]] = {}
     if names:
-        known = rejoined_names(names, every_quantity().all_key_values)
-        found = [one for name in known for one in _named(case, name, option)]
+        found = [
+            answer for name in KEY_VALUES.names_of(names) for answer in _named(case, name, option)
+        ]
     else:
         found = [*_holding(case, "forces" if machine.cylinders else "flywheel")]
     for one, value in found:
@@ -123,24 +123,28 @@ def requested_answers(
 
 def _named(case: Case, name: str, option: str) -> list[tuple[Answer, object]]:
     """Return (key value, its value for this machine: see `_holding`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
-    declared = every_quantity().all_key_values
     prefix, _, own = name.rpartition(".")
     owner = _WHOLE if prefix == MACHINE else prefix
-    ids = called(own, declared)
+    ids = KEY_VALUES.ids_of(own)
     if not ids or ambiguity(own, ids):
+        declared = every_quantity().all_key_values
         near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
         raise UsageError(
             f"{option}: {ambiguity(own, ids) or f'no key value {text_in_one_line(name)!r}{near}'}"
         )
-    commands = every_quantity().commands_of(ids[0])
-    for command in (
-        ("forces", *commands) if "forces" in commands and case.machine.cylinders else commands
-    ):
+    for command in _commands_with(case, ids[0]):
         if found := [*_holding(case, command, ids[0], owner)]:
             return found
     raise UsageError(
         f"{option}: this machine has no {text_in_one_line(name)}; kurbel check shows why"
     )
+
+
+def _commands_with(case: Case, id: str) -> Iterator[str]:
+    """Yield the commands that have a key value; that of cylinders first, if it has it and there are any."""
+    if case.machine.cylinders and "forces" in KEY_VALUES[id].commands:
+        yield "forces"
+    yield from KEY_VALUES.commands_of(id)
 
 
 def _holding(
@@ -181,7 +185,7 @@ def answered(
     """
     batches, failures = binder.bound(columns)
     found = failures | answers_of(batches, requested)
-    return [found[row] for row in range(len(columns[0].places))]
+    return [found[row] for row in range(len(columns[0].indices))]
 
 
 @np.errstate(all="ignore")
@@ -197,7 +201,7 @@ def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[in
                 )
         for place, row in enumerate(batch.rows):
             if row not in found:
-                found[row] = answered_alone(batch.one(place), requested)
+                found[row] = answered_alone(batch.single(place), requested)
     return found
 
 
@@ -210,7 +214,7 @@ def is_slow(machine: Machine, requested: Sequence[Answer]) -> bool:
     if any(one.command == "torsion" for one in requested):
         return True
     return any(cylinder.mechanism.name not in _IN_BATCHES for cylinder in machine.cylinders) or any(
-        isinstance(chamber, Trace)
+        chamber.traced
         or (
             isinstance(chamber, Card)
             and sum(len(line.fractions) for line in chamber.lines) > _MOST_POINTS

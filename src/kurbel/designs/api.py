@@ -1,4 +1,4 @@
-"""`kurbel.sweep` and `kurbel.find_solutions`: many designs of a machine from Python."""
+"""`kurbel.sweep` and `kurbel.find`: many designs of a machine from Python."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -44,16 +44,17 @@ def sweep(
     start = tuple(texts_at(origin, tuple(inputs)))
     names = (columns,) if isinstance(columns, str) else tuple(columns)
     axis = tuple(_inputs(Binder(origin, tuple(inputs), start), inputs))
-    found = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
-    rows = list(computed_rows(found, range(found.rows)))
+    swept = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
+    rows = list(computed_rows(swept, range(swept.rows)))
     arrays: dict[str, Any] = {}
-    for head, values in zip(found.heads, zip(*(row.values for row in rows))):
-        if not head.input:
-            listed = any(isinstance(value, tuple) for value in values)
-            arrays[head.id] = (
-                np.fromiter(values, object) if listed else np.array(values, dtype=float)
-            )
-    texts = dict(zip(found.texts, zip(*(row.texts for row in rows))))
+    for head, values in zip(swept.heads, zip(*(row.values for row in rows))):
+        if head.input:
+            continue
+        if any(isinstance(value, tuple) for value in values):
+            arrays[head.id] = np.fromiter(values, object)
+        else:
+            arrays[head.id] = np.array(values, dtype=float)
+    texts = dict(zip(swept.texts, zip(*(row.texts for row in rows))))
     arrays["failure"] = np.array(texts["failure"])
     if "keeps" in texts:
         arrays["keeps"] = np.array(texts["keeps"]) == "yes"
@@ -90,10 +91,14 @@ def find(
             (kind,) = Binder(origin, [key], texts_at(origin, [key])).kinds
             unit = SI.get(kind, "")
         texts.append(f"{key}={low}:{high} {unit}".rstrip())
-    equations, conditions = (
-        [one] if isinstance(one, str) and one else [*one] for one in (wanted, where)
-    )
-    return find_in(origin, texts, equations, least, greatest, conditions)
+    return find_in(origin, texts, _as_list(wanted), least, greatest, _as_list(where))
+
+
+def _as_list(texts: Sequence[str] | str) -> list[str]:
+    """Return one text or several as a list; an empty text is none."""
+    if isinstance(texts, str):
+        return [texts] if texts else []
+    return list(texts)
 
 
 def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
@@ -110,10 +115,11 @@ def _inputs(binder: Binder, inputs: Mapping[str, object]) -> Iterator[Input]:
     """Yield the inputs with their values; raises UsageError for different lengths."""
     columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
     count = max(map(len, columns), default=0)
-    if not count or any(column.shape not in ((count,), (1,)) for column in columns):
-        each = ", ".join(f"{key} has {len(column)}" for key, column in zip(inputs, columns))
+    fits = all(column.shape in ((count,), (1,)) for column in columns)
+    if not count or not fits:
+        lengths = ", ".join(f"{key} has {len(column)}" for key, column in zip(inputs, columns))
         raise UsageError(
-            f"give as many values of every key, one or more of them; {each or 'there is none'}"
+            f"give as many values of every key, one or more of them; {lengths or 'there is none'}"
         )
     for key, column, kind in zip(inputs, columns, binder.kinds):
         values = np.broadcast_to(column, count).tolist()

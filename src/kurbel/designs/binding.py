@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices, Indivisible
+from kurbel.arrays import Array, Flags, Indices, Indivisible
 from kurbel.declared.forms.structures import Maker, ReadMapping
 from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
@@ -33,18 +33,18 @@ INFINITE = "infinite"
 
 
 class KeyColumn(NamedTuple):
-    """The values of a key in rows: row k has value number `places[k]` of the input.
+    """The values of a key in rows: row k has value number `indices[k]` of the input.
 
     numbers: all values of the input, in the base of their kind, nan for a word.
     """
 
     input: Input
     numbers: Array
-    places: Indices
+    indices: Indices
 
     def text(self, row: int) -> str:
         """Return the value in a row as the machine file would have it."""
-        return self.input.text(int(self.places[row]))
+        return self.input.text(int(self.indices[row]))
 
 
 class Batch(NamedTuple):
@@ -56,9 +56,9 @@ class Batch(NamedTuple):
     machine: Machine
     rows: Sequence[int]
 
-    def one(self, place: int) -> Machine:
+    def single(self, index: int) -> Machine:
         """Return a single machine, counted from 0."""
-        return changed(self.machine, lambda numbers: numbers[place].item())
+        return changed(self.machine, lambda numbers: numbers[index].item())
 
 
 class Binder:
@@ -71,62 +71,72 @@ class Binder:
     def __init__(
         self, origin: Origin, keys: Sequence[str], start: Sequence[str], cases: bool = False
     ) -> None:
-        self._origin, self._keys, self._start, self._cases = origin, keys, start, cases
+        self._origin = origin
+        self._keys = keys
+        self._start = start
+        self._cases = cases
         root = read_values(self._with(start), reading_of(origin))
         self.machine: Machine = root.made
-        self.kinds: list[str] = [""] * cases
+        self.kinds: list[str] = [""] if cases else []
         """The kind of number of each key, '' for words."""
-        self._numeric = [False] * cases
+        self._is_numeric = [False] if cases else []
         mappings = list(_mappings(root))
-        for key in keys[cases:]:
-            owner, name, inner = _owner(path_of(key), mappings)
+        for key in keys[len(self.kinds) :]:
+            owner, name, inner_path = _owner(path_of(key), mappings)
             form = owner.form.keys[name].form
-            text = value_at(owner.mapping.get(name), inner)
-            bare = (
-                inner and isinstance(text, str) and NUMBER.fullmatch(text)
-            )  # the number of a point, say
-            self.kinds.append(
-                form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else "")
-            )
-            self._numeric.append(
-                not inner and form.number is not None and not _is_indivisible(owner, mappings)
-            )
-        self._words, self._root = self._structure(start), root
+            written = owner.mapping.get(name)
+            kind = form.kind_as_written(written)
+            if not kind and inner_path:
+                # the number of a point, say, is bare
+                text = value_at(written, inner_path)
+                is_bare_number = isinstance(text, str) and NUMBER.fullmatch(text)
+                kind = "ratio" if is_bare_number else ""
+            self.kinds.append(kind)
+            is_number = not inner_path and form.number is not None
+            self._is_numeric.append(is_number and not _is_indivisible(owner, mappings))
+        self._words = self._structure(start)
+        self._root = root
 
     def columns(self, numbers: Array) -> list[KeyColumn]:
         """Return columns of numbers (rows, keys) in the base of the kinds of all keys."""
         rows = np.arange(len(numbers))
-        each = zip(self._keys, self.kinds, numbers.T)
-        return [
-            KeyColumn(Input(key, (), tuple(own.tolist()), SI[kind]), own, rows)
-            for key, kind, own in each
-        ]
+        columns = []
+        for key, kind, values in zip(self._keys, self.kinds, numbers.T):
+            input = Input(key, (), tuple(values.tolist()), SI[kind])
+            columns.append(KeyColumn(input, values, rows))
+        return columns
 
     def bound(self, columns: Sequence[KeyColumn]) -> tuple[list[Batch], dict[int, str]]:
         """Return the machines of rows in batches, and why other rows have none; columns: the values of the keys."""
-        found, failures, rows = list[Batch](), dict[int, str](), np.arange(len(columns[0].places))
-        texts = (
-            map(column.text, rows.tolist())
-            for column, number in zip(columns, self._numeric)
-            if not number
-        )
-        words = [np.unique(list(text), return_inverse=True)[1] for text in texts]
-        for places in _alike(words, rows):
-            batches, apart = self._together(columns, places) if len(places) > 1 else ([], places)
-            found += batches
-            for row in apart.tolist():
-                alone = self._alone([column.text(row) for column in columns])
-                if isinstance(alone, str):
-                    failures[row] = alone
+        batches: list[Batch] = []
+        failures: dict[int, str] = {}
+        rows = np.arange(len(columns[0].indices))
+
+        # rows with the same words are read together
+        words = []
+        for column, is_numeric in zip(columns, self._is_numeric):
+            if not is_numeric:
+                texts = [column.text(row) for row in rows.tolist()]
+                words.append(np.unique(texts, return_inverse=True)[1])
+        for group in _groups_alike(words, rows):
+            rows_alone = group
+            if len(group) > 1:
+                together, rows_alone = self._together(columns, group)
+                batches += together
+            for row in rows_alone.tolist():
+                machine = self._alone([column.text(row) for column in columns])
+                if isinstance(machine, str):
+                    failures[row] = machine
                 else:
-                    found.append(Batch(alone, [row]))
-        return found, failures
+                    batches.append(Batch(machine, [row]))
+        return batches, failures
 
     def _with(self, texts: Sequence[str]) -> Origin:
         """Return the file with these texts under the keys."""
-        given = tuple(f"{key}={text}" for key, text in zip(self._keys, texts))
-        case = texts[0] if self._cases else self._origin.case
-        return self._origin._replace(case=case, varied=given[self._cases :])
+        varied = tuple(f"{key}={text}" for key, text in zip(self._keys, texts))
+        if self._cases:
+            return self._origin._replace(case=texts[0], varied=varied[1:])
+        return self._origin._replace(varied=varied)
 
     def _alone(self, texts: Sequence[str]) -> Machine | str:
         """Return the machine of one row, or the reason why there is none."""
@@ -136,59 +146,34 @@ class Binder:
         except UsageError as error:
             return str(error)
         except MachineFileError:
-            faults = (
-                f"{path_text(fault.path)}: {fault.message}" if fault.path else fault.message
-                for fault in reading.faults
-            )
-            return "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
+            # identical cylinders have the same fault
+            messages: dict[str, None] = {}
+            for fault in reading.faults:
+                where = f"{path_text(fault.path)}: " if fault.path else ""
+                messages[f"{where}{fault.message}"] = None
+            return "; ".join(messages)
         return machine
 
     def _structure(self, texts: Iterable[str]) -> list[str]:
         """Return the texts of a row with the numbers of the first machine: those of rows of one structure agree."""
-        return [
-            one if number else text for text, one, number in zip(texts, self._start, self._numeric)
-        ]
+        words = []
+        for text, start, is_numeric in zip(texts, self._start, self._is_numeric):
+            words.append(start if is_numeric else text)
+        return words
 
-    def _together(
-        self, columns: Sequence[KeyColumn], places: Indices
-    ) -> tuple[list[Batch], Indices]:
+    def _together(self, columns: Sequence[KeyColumn], rows: Indices) -> tuple[list[Batch], Indices]:
         """Return the machines of rows with the same words, and the rows that must be read one by one."""
-        within = np.ones(len(places), dtype=bool)
-        slots: list[tuple[ReadMapping, str, NumberForm, Array]] = []
         try:
-            words = self._structure(column.text(places[0]) for column in columns)
-            if words != self._words:
-                self._words, self._root = (
-                    words,
-                    read_values(self._with(words), reading_of(self._origin)),
-                )
-            mappings = list(_mappings(self._root))
-            for column in (
-                column for column, is_number in zip(columns, self._numeric) if is_number
-            ):
-                owner, name, _ = _owner(path_of(column.input.key), mappings)
-                number = owner.form.keys[name].form.number
-                if number is None:
-                    return [], places
-                numbers = column.numbers[column.places[places]]
-                within &= number.within(numbers)
-                # a cylinder that is `like` the one of a key gets its numbers, too
-                text = owner.mapping.get(name)
-                alike = (
-                    mapping
-                    for mapping in mappings
-                    if _reads(mapping, name) and mapping.mapping.get(name) is text
-                )
-                slots += [(one, name, number, numbers) for one in alike]
-            for one, name, number, numbers in slots:
-                one.values[name] = (
-                    number.becomes(numbers[within], "") if number.becomes else numbers[within]
-                )
-            maker = Maker(Reading(), int(within.sum()))
+            self._read_structure(columns, rows[0])
+            numbers = self._numbers_in_place(columns, rows)
+            if numbers is None:
+                return [], rows
+            are_within = self._put_in_place(numbers, len(rows))
+            maker = Maker(Reading(), int(are_within.sum()))
             with np.errstate(all="ignore"):
                 machine = maker.made(self._root)
-            if maker.reading.faults or not within.any():
-                return [], places
+            if maker.reading.faults or not are_within.any():
+                return [], rows
         # a formula that works for a single machine only: these rows are read one by one
         except (
             KurbelError,
@@ -199,43 +184,91 @@ class Binder:
             ArithmeticError,
             IndexError,
         ):
-            return [], places
-        read, batches = places[within], []
-        for fit in _with_same_branches(machine, np.flatnonzero(~maker.broken)):
+            return [], rows
+
+        rows_read = rows[are_within]
+        batches = []
+        for alike in _with_same_branches(machine, np.flatnonzero(~maker.broken)):
             # a value that all machines have in common becomes a number
-            batch = changed(machine, lambda numbers, fit=fit: _column(numbers[fit]))  # type: ignore[misc]
-            batches.append(Batch(batch, read[fit].tolist()))
-        return batches, np.concatenate([places[~within], read[maker.broken]])
+            batch = changed(machine, lambda values, alike=alike: _column(values[alike]))  # type: ignore[misc]
+            batches.append(Batch(batch, rows_read[alike].tolist()))
+        return batches, np.concatenate([rows[~are_within], rows_read[maker.broken]])
+
+    def _read_structure(self, columns: Sequence[KeyColumn], row: int) -> None:
+        """Read the machine with the words of a row, if these are others than those of the last one."""
+        words = self._structure(column.text(row) for column in columns)
+        if words != self._words:
+            self._words = words
+            self._root = read_values(self._with(words), reading_of(self._origin))
+
+    def _numbers_in_place(
+        self, columns: Sequence[KeyColumn], rows: Indices
+    ) -> list[tuple[ReadMapping, str, NumberForm, Array]] | None:
+        """Return mapping, key, form and values of each number that varies; None where a key has a word here."""
+        numbers = []
+        mappings = list(_mappings(self._root))
+        for column, is_numeric in zip(columns, self._is_numeric):
+            if not is_numeric:
+                continue
+            owner, name, _ = _owner(path_of(column.input.key), mappings)
+            form = owner.form.keys[name].form.number
+            if form is None:
+                return None
+            values = column.numbers[column.indices[rows]]
+            # a cylinder that is `like` the one of a key gets its numbers, too
+            text = owner.mapping.get(name)
+            for mapping in mappings:
+                if _reads(mapping, name) and mapping.mapping.get(name) is text:
+                    numbers.append((mapping, name, form, values))
+        return numbers
+
+    def _put_in_place(
+        self, numbers: Sequence[tuple[ReadMapping, str, NumberForm, Array]], count: int
+    ) -> Flags:
+        """Put arrays in the place of numbers, and return which rows (n,) are within all bounds."""
+        are_within = np.ones(count, dtype=bool)
+        for _, _, form, values in numbers:
+            are_within &= form.within(values)
+        for mapping, name, form, values in numbers:
+            within_bounds = values[are_within]
+            if form.becomes:
+                mapping.values[name] = form.becomes(within_bounds, "")
+            else:
+                mapping.values[name] = within_bounds
+        return are_within
 
 
-def numbers_of(one: Input, kind: str) -> Array:
+def numbers_of(input: Input, kind: str) -> Array:
     """Return the values (n,) of an input in the base of their kind; nan for words, and for what cannot be read."""
-    if one.texts:
-        known = {INFINITE: math.inf}
-        for text in dict.fromkeys(one.texts):
+    if input.texts:
+        numbers = {INFINITE: math.inf}
+        for text in dict.fromkeys(input.texts):
             with suppress(UnitError):
-                known[text] = parse_quantity(text, kind) if kind else math.nan
-        return np.array([known.get(text, math.nan) for text in one.texts])
+                numbers[text] = parse_quantity(text, kind) if kind else math.nan
+        return np.array([numbers.get(text, math.nan) for text in input.texts])
     with suppress(UnitError):
         if kind:
-            share = kind == "ratio" and one.unit == "%"
-            up, down = (1, 100) if share else unit_factor(one.unit, kind)
-            return (np.array(one.numbers, dtype=float) + zero_of(one.unit)) * up / down
-    return np.full(one.length, math.nan)
+            is_percent = kind == "ratio" and input.unit == "%"
+            up, down = (1, 100) if is_percent else unit_factor(input.unit, kind)
+            values = np.array(input.numbers, dtype=float)
+            return (values + zero_of(input.unit)) * up / down
+    return np.full(input.length, math.nan)
 
 
-def _alike(columns: Sequence[Array | Indices], places: Indices) -> list[Indices]:
-    """Return places in groups, in each of which every column has one value."""
-    groups = [places] if len(places) else []
+def _groups_alike(columns: Sequence[Array | Indices], indices: Indices) -> list[Indices]:
+    """Return indices in groups, in each of which every column has one value."""
+    groups = [indices] if len(indices) else []
     for column in columns:
-        groups = [
-            group[column[group] == value] for group in groups for value in np.unique(column[group])
-        ]
+        parted = []
+        for group in groups:
+            values = column[group]
+            parted += [group[values == value] for value in np.unique(values)]
+        groups = parted
     return groups
 
 
-def _with_same_branches(machine: Machine, fit: Indices) -> list[Indices]:
-    """Return places, among those that fit, of machines that take the same branches in the solver.
+def _with_same_branches(machine: Machine, indices: Indices) -> list[Indices]:
+    """Return indices, among these, of machines that take the same branches in the solver.
 
     The same numbers are 0 or infinite in them, and the same throws share their crank angle, their stroke line and their
     axial position.
@@ -247,24 +280,26 @@ def _with_same_branches(machine: Machine, fit: Indices) -> list[Indices]:
         return numbers
 
     changed(machine, coded)
-    for one, other in combinations(machine.cylinders, 2):
-        places = [
-            0.0 if each.axial_position is None else each.axial_position for each in (one, other)
-        ]
-        turned = one.bank_angle - other.bank_angle
-        for apart in map(
-            np.abs,
-            (one.crank_position - other.crank_position - turned, turned, places[0] - places[1]),
-        ):
-            if np.ndim(apart):
-                codes.append(np.minimum(apart, np.abs(apart - 360.0)) < 1e-9)
-    return _alike(codes, fit)
+    for cylinder, other in combinations(machine.cylinders, 2):
+        bank_difference = cylinder.bank_angle - other.bank_angle
+        pin_difference = cylinder.crank_position - other.crank_position - bank_difference
+        axial_position = 0.0 if cylinder.axial_position is None else cylinder.axial_position
+        other_position = 0.0 if other.axial_position is None else other.axial_position
+        differences = (pin_difference, bank_difference, axial_position - other_position)
+        for difference in map(np.abs, differences):
+            if np.ndim(difference):
+                apart = np.minimum(difference, np.abs(difference - 360.0))
+                codes.append(apart < 1e-9)
+    return _groups_alike(codes, indices)
 
 
 def _column(values: Array) -> Array | list[object]:
     """Return an array of many machines, or the number if all have the same."""
-    bits = values.view(np.int64)  # 0 and −0 are different
-    return values if (bits != bits[0]).any() else values[0].item()
+    # bit by bit: 0 and −0 are different
+    bits = values.view(np.int64)
+    if (bits != bits[0]).any():
+        return values
+    return values[0].item()
 
 
 # the place of a key
@@ -273,25 +308,26 @@ def _column(values: Array) -> Array | list[object]:
 def _mappings(value: object) -> Iterator[ReadMapping]:
     """Yield every mapping as read, inner ones first."""
     if isinstance(value, ReadMapping):
-        for one in value.values.values():
-            yield from _mappings(one)
+        for inner in value.values.values():
+            yield from _mappings(inner)
         yield value
     elif isinstance(value, tuple):
-        for one in value:
-            yield from _mappings(one)
+        for item in value:
+            yield from _mappings(item)
 
 
-def _reads(given: ReadMapping, name: object) -> bool:
+def _reads(mapping: ReadMapping, name: object) -> bool:
     """Return whether a key is one of the record itself, and given."""
-    return name in given.values and name in given.form.keys
+    return name in mapping.values and name in mapping.form.keys
 
 
-def _is_indivisible(given: ReadMapping, mappings: Sequence[ReadMapping]) -> bool:
+def _is_indivisible(mapping: ReadMapping, mappings: Sequence[ReadMapping]) -> bool:
     """Return whether a mapping, or one that it is in, becomes a record whose arrays are those of one machine."""
-    return any(
-        isinstance(mapping.made, Indivisible) and given.path[: len(mapping.path)] == mapping.path
-        for mapping in mappings
-    )
+    for outer in mappings:
+        is_outer = mapping.path[: len(outer.path)] == outer.path
+        if is_outer and isinstance(outer.made, Indivisible):
+            return True
+    return False
 
 
 def _owner(path: Path, mappings: Sequence[ReadMapping]) -> tuple[ReadMapping, str, Path]:
@@ -299,16 +335,18 @@ def _owner(path: Path, mappings: Sequence[ReadMapping]) -> tuple[ReadMapping, st
     owner = None
     for mapping in mappings:
         depth = len(mapping.path)
-        if mapping.path == path[:depth] and depth < len(path) and _reads(mapping, path[depth]):
-            owner = mapping if owner is None or depth > len(owner.path) else owner
+        is_above = mapping.path == path[:depth] and depth < len(path)
+        if is_above and _reads(mapping, path[depth]):
+            is_deeper = owner is None or depth > len(owner.path)
+            owner = mapping if is_deeper else owner
     if owner is None:
         raise UsageError(f"--vary {path_text(path)}: this key has no value that could be varied")
-    if len(owner.path) < len(path) - 1:  # a key next to the deciding one belongs to its mapping
+
+    # a key next to the deciding one belongs to its mapping
+    depth = len(owner.path)
+    if depth < len(path) - 1:
         for mapping in mappings:
-            if (
-                len(mapping.path) == len(path)
-                and mapping.path[:-1] == path[:-1]
-                and _reads(mapping, path[-1])
-            ):
+            is_beside = len(mapping.path) == len(path) and mapping.path[:-1] == path[:-1]
+            if is_beside and _reads(mapping, path[-1]):
                 return mapping, str(path[-1]), ()
-    return owner, str(path[len(owner.path)]), path[len(owner.path) + 1 :]
+    return owner, str(path[depth]), path[depth + 1 :]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Flags, Indices
 from kurbel.declared.numerals import keyboard_text
 from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import convert
@@ -17,8 +17,7 @@ from kurbel.designs.answers import Cell, Design, Head
 from kurbel.designs.binding import INFINITE
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
-from kurbel.quantities import every_quantity
-from kurbel.quantity import called
+from kurbel.quantities import KEY_VALUES
 
 _RELATIONS: dict[str, Callable[..., bool]] = {
     "<=": operator.le,
@@ -87,11 +86,10 @@ def place_of(name: str, heads: Sequence[Head], option: str) -> int:
     """Return which column of single values a name or a printed symbol is; raises UsageError."""
     ids = tuple(head.id for head in heads)
     owner, _, own = name.rpartition(".")
-    meant = (
-        name,
-        *(f"{owner}.{id}".lstrip(".") for id in called(own, every_quantity().all_key_values)),
-    )
-    place = next((ids.index(one) for one in meant if one in ids), None)
+    meant = [name]
+    if name not in ids:  # a symbol
+        meant += (f"{owner}.{id}".lstrip(".") for id in KEY_VALUES.ids_of(own))
+    place = next((ids.index(column) for column in meant if column in ids), None)
     if place is None:
         raise UsageError(
             f"{option}: no column '{text_in_one_line(name)}'{did_you_mean(name, ids)} (there are {', '.join(ids)})"
@@ -133,20 +131,93 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
 
 def pareto_front(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:
     """Yield the Pareto front: the rows than which no other is better in one aim and as good in all."""
-    given = [row for row in rows if not any(aim.of(row)[0] for aim in aims)]
-    costs = np.array([[aim.of(row)[1] for aim in aims] for row in given]).reshape(
-        len(given), len(aims)
-    )
-    order = np.lexsort(costs.T[::-1])  # of these the first is never bettered by a later one
-    front = []
-    while len(order):
-        first, order = order[0], order[1:]
-        front.append(first)
-        worse = (costs[first] <= costs[order]).all(axis=1) & (costs[first] < costs[order]).any(
-            axis=1
-        )
-        order = order[~worse]
-    return (given[place] for place in sorted(front))
+    judged, costs = list[Design](), list[list[float]]()
+    for row in rows:
+        verdicts = [aim.of(row) for aim in aims]
+        if not any(lacks for lacks, _ in verdicts):
+            judged.append(row)
+            costs.append([cost for _, cost in verdicts])
+    is_best = unbettered(np.array(costs).reshape(len(judged), len(aims)))
+    return (row for row, is_there in zip(judged, is_best.tolist()) if is_there)
+
+
+_BLOCK = 512
+"""Points that are compared with one another together."""
+
+
+def unbettered(costs: Array) -> Flags:
+    """Return which points (n, aims) no other is less in one cost and not more in any; equal ones stand together.
+
+    In the order of the first cost, of equal ones in that of the next, a point is bettered by earlier ones alone, and by
+    any of these that is not more in the other costs. Of two costs the least one so far decides.
+    """
+    count, aims = costs.shape
+    if not count:
+        return np.zeros(0, dtype=bool)
+
+    # points in order, equal ones once
+    order = np.lexsort(costs.T[::-1])
+    ordered = costs[order]
+    is_new = np.ones(count, dtype=bool)
+    is_new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    points = ordered[is_new]
+
+    if aims <= 2:
+        others = points[:, -1]
+        least_before = np.minimum.accumulate(others)[:-1]
+        stays: Flags = np.ones(len(points), dtype=bool)
+        stays[1:] = others[1:] < least_before if aims == 2 else False
+    else:
+        stays = _unbettered_by_blocks(_ranks(points[:, 1:]))
+
+    found = np.empty(count, dtype=bool)
+    found[order] = stays[np.cumsum(is_new) - 1]
+    return found
+
+
+def _ranks(points: Array) -> Indices:
+    """Return the ranks of points (n, costs) in each cost, equal ones sharing theirs, in the narrowest integers.
+
+    They compare as the costs do, and many times as fast.
+    """
+    narrowest = np.min_scalar_type(len(points))
+    ranks = np.empty(points.shape, dtype=narrowest)
+    for cost, values in enumerate(points.T):
+        _, rank = np.unique(values, return_inverse=True)
+        ranks[:, cost] = rank
+    return ranks
+
+
+def _unbettered_by_blocks(points: Indices) -> Flags:
+    """Return which of different points (n, costs) have no earlier one that is not more in any cost."""
+    stays = np.ones(len(points), dtype=bool)
+    front = np.empty((0, points.shape[1]), dtype=points.dtype)
+    for begin in range(0, len(points), _BLOCK):
+        rest = np.arange(begin, min(begin + _BLOCK, len(points)))
+
+        # by the front of all blocks before, of which a processor's cache holds a part
+        for part in np.split(front, range(_BLOCK, len(front), _BLOCK)):
+            rest = rest[~_is_reached(part, points[rest]).any(axis=0)]
+
+        # by earlier ones of this block
+        among = _is_reached(points[rest], points[rest])
+        is_earlier = np.tri(len(rest), k=-1, dtype=bool).T
+        rest = rest[~(among & is_earlier).any(axis=0)]
+
+        stays[begin : begin + _BLOCK] = False
+        stays[rest] = True
+        front = np.concatenate((front, points[rest]))
+    return stays
+
+
+def _is_reached(first: Indices, second: Indices) -> Flags:
+    """Return which of the first points (n, costs) are in no cost more than which of the second ones, (n, second)."""
+    reached = np.ones((len(first), len(second)), dtype=bool)
+    is_less = np.empty_like(reached)
+    for cost, other in zip(first.T, second.T):
+        np.less_equal(cost[:, None], other, out=is_less)
+        reached &= is_less
+    return reached
 
 
 class Unit(str):

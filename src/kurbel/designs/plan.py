@@ -59,28 +59,29 @@ class Input(NamedTuple):
         """The number of its values."""
         return len(self.texts or self.numbers)
 
-    def text(self, place: int) -> str:
+    def text(self, index: int) -> str:
         """Return a value as the machine file would have it."""
         if self.texts:
-            return self.texts[place]
-        return f"{str(self.numbers[place]).removesuffix('.0')} {self.unit}".rstrip()
+            return self.texts[index]
+        number = str(self.numbers[index]).removesuffix(".0")
+        return f"{number} {self.unit}".rstrip()
 
 
 def read_axis(text: str) -> tuple[Input, ...]:
     """Return the keys that change together, in `bore=400,450 mm; head_end_rod=70,80 mm`; raises UsageError.
 
-    >>> [one.key for one in read_axis("bore=400,450 mm; head_end_rod=70,80 mm")]
+    >>> [input.key for input in read_axis("bore=400,450 mm; head_end_rod=70,80 mm")]
     ['bore', 'head_end_rod']
     """
     parts = [part.strip() for part in _NEXT_KEY.split(text)]
     if len(parts) > 1 and not all(parts):
         raise _refused(text, "a key is missing next to ';'; write KEY=…; KEY=…, or leave it out")
-    together = tuple(map(read_input, parts))
-    if len(together) > 1 and any(one.distribution for one in together):
+    inputs = tuple(map(read_input, parts))
+    if len(inputs) > 1 and any(input.distribution for input in inputs):
         raise _refused(
             text, "a distribution has a --vary of its own; write a list or a range of each key"
         )
-    return together
+    return inputs
 
 
 def read_input(text: str) -> Input:
@@ -97,10 +98,12 @@ def read_input(text: str) -> Input:
             text,
             "write KEY=…, such as rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm)",
         )
-    if call := _CALL.fullmatch(values):
+    call = _CALL.fullmatch(values)
+    if call:
         distribution, unit = _distribution(text, call[1], call[2])
         return Input(key, unit=unit, distribution=distribution)
-    if ":" in values and "," not in values and NUMBER.match(values):
+    is_range = ":" in values and "," not in values and NUMBER.match(values)
+    if is_range:
         numbers, unit = _range(text, values)
         return Input(key, (), numbers, unit)
     return Input(key, _list(text, [part.strip() for part in values.split(",")]))
@@ -113,12 +116,9 @@ def read_span(text: str) -> tuple[str, str, str, str]:
     ('crank', '300 mm', '500 mm', 'mm')
     """
     key, _, values = (part.strip() for part in keyboard_text(text).partition("="))
-    (low, high), unit = _numbers(
-        text,
-        values.split(":") if key else (),
-        2,
-        "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm",
-    )
+    expected = "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm"
+    ends = values.split(":") if key else ()
+    (low, high), unit = _numbers(text, ends, 2, expected)
     return key, f"{low} {unit}".rstrip(), f"{high} {unit}".rstrip(), unit
 
 
@@ -128,7 +128,8 @@ def _refused(text: str, why: str) -> UsageError:
 
 def _list(text: str, parts: list[str]) -> tuple[str, ...]:
     """Return the values of a list; the unit of the last one is that of those before it that have none."""
-    if not all(parts) or any(len(part) > LONGEST_VALUE for part in parts):
+    are_values = all(0 < len(part) <= LONGEST_VALUE for part in parts)
+    if not are_values:
         raise _refused(
             text, "a value is missing between two commas; write decimal points, such as 1.5"
         )
@@ -140,48 +141,57 @@ def _list(text: str, parts: list[str]) -> tuple[str, ...]:
 
 def _numbers(text: str, parts: Sequence[str], count: int, expected: str) -> tuple[list[str], str]:
     """Return so many numbers as they are written, and their unit; expected: what else is refused."""
-    written = [written_unit(part) for part in parts]
-    numbers = [part.strip().removesuffix(unit).strip() for part, unit in zip(parts, written)]
+    units = [written_unit(part) for part in parts]
+    numbers = [part.strip().removesuffix(unit).strip() for part, unit in zip(parts, units)]
     if len(numbers) != count or not all(map(NUMBER.fullmatch, numbers)):
         raise _refused(text, expected)
-    units = sorted({*written} - {""})
-    if len(units) > 1:
-        raise _refused(text, f"write these numbers in one unit, not in {' and '.join(units)}")
-    if large := next((number for number in numbers if abs(float(number)) > _LARGEST), ""):
-        raise _refused(text, f"{text_in_one_line(large)} is too large to compute with")
-    return numbers, "".join(units)
+    different_units = sorted({*units} - {""})
+    if len(different_units) > 1:
+        in_units = " and ".join(different_units)
+        raise _refused(text, f"write these numbers in one unit, not in {in_units}")
+    for number in numbers:
+        if abs(float(number)) > _LARGEST:
+            raise _refused(text, f"{text_in_one_line(number)} is too large to compute with")
+    return numbers, "".join(different_units)
 
 
-def _range(text: str, values: str) -> tuple[tuple[float, ...], str]:
+def _range(text: str, written: str) -> tuple[tuple[float, ...], str]:
     """Return first, first + step, … as decimal fractions, exactly, as far as they do not pass the last; their unit."""
     expected = "a range has three numbers, first:last:step, such as 3:6:0.25"
-    numbers, unit = _numbers(text, values.split(":"), 3, expected)
+    numbers, unit = _numbers(text, written.split(":"), 3, expected)
     first, last, step = (Fraction(repr(float(number))) for number in numbers)
-    if not step or (last - first) / step < 0:
+    leads_away = not step or (last - first) / step < 0
+    if leads_away:
         raise _refused(
             text, f"a range from {numbers[0]} by steps of {numbers[2]} never reaches {numbers[1]}"
         )
-    if (last - first) / step >= _MOST_VALUES:
+    steps = (last - first) / step
+    if steps >= _MOST_VALUES:
         raise _refused(text, f"this range has more than {_MOST_VALUES} values, as no key may")
-    whole = math.lcm(first.denominator, step.denominator)
-    start, by = int(first * whole), int(step * whole)
-    return tuple((start + by * i) / whole for i in range(int((last - first) / step) + 1)), unit
+    # whole numbers over one denominator
+    denominator = math.lcm(first.denominator, step.denominator)
+    start = int(first * denominator)
+    increment = int(step * denominator)
+    values = tuple((start + increment * number) / denominator for number in range(int(steps) + 1))
+    return values, unit
 
 
 def _distribution(text: str, name: str, inside: str) -> tuple[NormalDist | Uniform, str]:
     if name not in _DISTRIBUTIONS:
-        known = ", ".join(f"{one}({words})" for one, words in _DISTRIBUTIONS.items())
-        raise _refused(text, f"no distribution '{text_in_one_line(name)}'; known are {known}")
+        names = ", ".join(f"{known}({words})" for known, words in _DISTRIBUTIONS.items())
+        raise _refused(text, f"no distribution '{text_in_one_line(name)}'; known are {names}")
     expected = f"{name}({_DISTRIBUTIONS[name]}) has two numbers, such as normal(450 mm, 0.2 mm)"
     numbers, unit = _numbers(text, inside.split(","), 2, expected)
     first, second = map(float, numbers)
-    if name == "normal" and second <= 0:
-        raise _refused(text, f"the standard deviation must be more than 0, got {numbers[1]}")
-    if name == "uniform" and second <= first:
+    if name == "normal":
+        if second <= 0:
+            raise _refused(text, f"the standard deviation must be more than 0, got {numbers[1]}")
+        return NormalDist(first, second), unit
+    if second <= first:
         raise _refused(
             text, f"the least value must be less than the most, got {numbers[0]} and {numbers[1]}"
         )
-    return NormalDist(first, second) if name == "normal" else Uniform(first, second), unit
+    return Uniform(first, second), unit
 
 
 class Plan:
@@ -201,29 +211,34 @@ class Plan:
         most: int | None = None,
     ) -> None:
         self.inputs = tuple(chain(*axes))
-        drawn = [one for one in self.inputs if one.distribution]
+        drawn = [input for input in self.inputs if input.distribution]
         self._axes = [axis for axis in axes if not axis[0].distribution]
         if side_by_side and self._axes:
             self._axes = [tuple(chain(*self._axes))]
-        self._refuse(drawn, sample, "--zip" if side_by_side else "")
+        self._refuse_keys()
+        self._refuse_sample(drawn, sample)
+        self._refuse_lengths("--zip" if side_by_side else "")
         self.rows = math.prod(axis[0].length for axis in self._axes) * (sample or 1)
         if most and self.rows > most:
             raise UsageError(f"these are {self.rows} rows; --yes computes more than {most}")
         if sample:
-            shares = latin_hypercube(sample, len(drawn), seed).T.tolist()
-            self._axes.append(tuple(map(_drawn, drawn, shares)))
-            known = {one.key: one for one in chain(*self._axes)}
-            self.inputs = tuple(known[one.key] for one in self.inputs)
+            self._draw(drawn, sample, seed)
 
-    def _refuse(self, drawn: Sequence[Input], sample: int | None, option: str) -> None:
-        paths = [path_of(one.key) for one in self.inputs]
-        for place, (one, path) in enumerate(zip(self.inputs, paths)):
-            if path in paths[:place]:
-                raise UsageError(f"--vary {one.key}: this key is varied twice")
+    def _refuse_keys(self) -> None:
+        """Refuse keys that are varied twice, and limits."""
+        paths_before = set()
+        for input in self.inputs:
+            path = path_of(input.key)
+            if path in paths_before:
+                raise UsageError(f"--vary {input.key}: this key is varied twice")
             if path[0] == "limits":
                 raise UsageError(
-                    f"--vary {one.key}: limits are the same for all rows; --where chooses those within others"
+                    f"--vary {input.key}: limits are the same for all rows; --where chooses those within others"
                 )
+            paths_before.add(path)
+
+    def _refuse_sample(self, drawn: Sequence[Input], sample: int | None) -> None:
+        """Refuse a distribution without a sample, and a sample without a distribution."""
         if drawn and not sample:
             raise UsageError(
                 f"--vary {drawn[0].key}: a distribution needs --sample N, such as --sample 1000"
@@ -232,31 +247,42 @@ class Plan:
             raise UsageError(
                 "--sample: no key has a distribution, such as bore=normal(450 mm, 0.2 mm)"
             )
-        for axis in self._axes:
-            if len({one.length for one in axis}) > 1:
-                each = ", ".join(f"{one.key} has {one.length}" for one in axis)
-                where = option or f"--vary {'; '.join(one.key for one in axis)}"
-                raise UsageError(f"{where}: the lists must be of one length; {each}")
 
-    def places(self, rows: Indices) -> list[Indices]:
+    def _refuse_lengths(self, option: str) -> None:
+        """Refuse lists of different lengths along an axis; option: that puts them side by side."""
+        for axis in self._axes:
+            if len({input.length for input in axis}) > 1:
+                lengths = ", ".join(f"{input.key} has {input.length}" for input in axis)
+                where = option or f"--vary {'; '.join(input.key for input in axis)}"
+                raise UsageError(f"{where}: the lists must be of one length; {lengths}")
+
+    def _draw(self, drawn: Sequence[Input], sample: int, seed: int) -> None:
+        """Draw the values of the distributions, which form an axis."""
+        shares = latin_hypercube(sample, len(drawn), seed).T.tolist()
+        self._axes.append(tuple(map(_drawn, drawn, shares)))
+        with_values = {input.key: input for input in chain(*self._axes)}
+        self.inputs = tuple(with_values[input.key] for input in self.inputs)
+
+    def value_numbers(self, rows: Indices) -> list[Indices]:
         """Return which of its values each input has in these rows (n,)."""
-        found: dict[str, Indices] = {}
+        numbers: dict[str, Indices] = {}
         for axis in reversed(self._axes):
-            rows, place = np.divmod(rows, axis[0].length)
-            found |= dict.fromkeys((one.key for one in axis), place)
-        return [found[one.key] for one in self.inputs]
+            rows, along_axis = np.divmod(rows, axis[0].length)
+            for input in axis:
+                numbers[input.key] = along_axis
+        return [numbers[input.key] for input in self.inputs]
 
     def texts(self, row: int) -> tuple[str, ...]:
         """Return the values of the inputs in a row as the machine file would have them."""
-        return tuple(
-            one.text(int(place[0])) for one, place in zip(self.inputs, self.places(np.array([row])))
-        )
+        numbers = self.value_numbers(np.array([row]))
+        return tuple(input.text(int(number[0])) for input, number in zip(self.inputs, numbers))
 
 
-def _drawn(one: Input, shares: Sequence[float]) -> Input:
+def _drawn(input: Input, shares: Sequence[float]) -> Input:
     """Return an input with the values of its distribution below which these shares of all lie."""
-    assert one.distribution
-    return Input(one.key, (), tuple(map(one.distribution.inv_cdf, shares)), one.unit)
+    assert input.distribution
+    values = tuple(map(input.distribution.inv_cdf, shares))
+    return Input(input.key, (), values, input.unit)
 
 
 def latin_hypercube(count: int, width: int, seed: int) -> Array:
@@ -264,8 +290,8 @@ def latin_hypercube(count: int, width: int, seed: int) -> Array:
     random = np.random.default_rng(seed)
     strips = random.permuted(np.tile(np.arange(float(count))[:, None], width), axis=0)
     # neither 0 nor 1: a distribution has no value there
-    within = np.clip(random.random((count, width)), 2.0**-40, 1 - 2.0**-40)
-    return (strips + within) / count
+    in_strip = np.clip(random.random((count, width)), 2.0**-40, 1 - 2.0**-40)
+    return (strips + in_strip) / count
 
 
 def shard(text: str, rows: int) -> range:
@@ -274,8 +300,8 @@ def shard(text: str, rows: int) -> range:
     >>> [shard(f"{k}/3", 8) for k in (1, 2, 3)]
     [range(0, 2), range(2, 5), range(5, 8)]
     """
-    found = re.fullmatch("([0-9]{1,9})/([0-9]{1,9})", text)
-    number, count = map(int, found.groups()) if found else (0, 0)
+    match = re.fullmatch("([0-9]{1,9})/([0-9]{1,9})", text)
+    number, count = map(int, match.groups()) if match else (0, 0)
     if not 1 <= number <= count:
         raise UsageError(f"--shard {text_in_one_line(text)}: write K/N, such as 2/8, K from 1 to N")
     return range(rows * (number - 1) // count, rows * number // count)

@@ -68,7 +68,7 @@ class Sweep:
         if self.rows > _STARTS:
             # steps of the golden section: all over the plan, without repeating the same value of a key
             starts = (int(self.rows * (number * _GOLDEN % 1)) for number in range(_STARTS))
-        self._keys = [one.key for one in self.plan.inputs]
+        self._keys = [input.key for input in self.plan.inputs]
         texts = chain([spec.start] if spec.start else [], map(self.plan.texts, starts))
         self._study = Study(
             spec.origin, self._keys, texts, spec.columns, spec.with_angles, cases=spec.cases
@@ -83,12 +83,9 @@ class Sweep:
         """The heads of the columns, with units that are chosen by the first values."""
         heads = []
         for column, kind in zip(self._columns(range(1)), self._study.binder.kinds):
-            first = float(column.numbers[column.places[0]])
-            unit = (
-                shown_unit(kind, self.spec.system, first if math.isfinite(first) else 0.0)
-                if kind
-                else ""
-            )
+            first = float(column.numbers[column.indices[0]])
+            size = first if math.isfinite(first) else 0.0
+            unit = shown_unit(kind, self.spec.system, size) if kind else ""
             heads.append(Head(column.input.key, unit, kind, input=True))
         return (*heads, *self._study.heads(self.spec.system))
 
@@ -98,36 +95,40 @@ class Sweep:
 
         Identical cylinders have equal values in all rows, unless the load case or a key of a single cylinder varies.
         """
-        heads = [(head.id, place) for place, head in enumerate(self.heads)]
-        if self.spec.cases or any(re.match(r"cylinders\W*\d", key) for key in self._keys):
+        heads = [(head.id, index) for index, head in enumerate(self.heads)]
+        of_single_cylinder = any(re.match(r"cylinders\W*\d", key) for key in self._keys)
+        if self.spec.cases or of_single_cylinder:
             return heads
-        alike = {
+        originals = {
             cylinder.drive.name: cylinder.twin or cylinder
             for cylinder in Case(self._study.binder.machine).cylinders
         }
-        count, answers = len(self._keys), self._study.answers
+        answers = self._study.answers
 
-        def content(place: int) -> Hashable:
-            one, value = answers[place], self._study.first[place]
-            what, _, owner = one.subject.rpartition(" of ")
-            if owner not in alike or not isinstance(value, float):
-                return place
-            return what, alike[owner], one.quantity.id, one.angle, f"{value:.9g}"
+        def content(index: int) -> Hashable:
+            answer = answers[index]
+            value = self._study.first[index]
+            what, _, owner = answer.subject.rpartition(" of ")
+            if owner not in originals or not isinstance(value, float):
+                return index
+            return what, originals[owner], answer.quantity.id, answer.angle, f"{value:.9g}"
 
+        count = len(self._keys)
         shown = heads[:count]
         for group in grouped(range(len(answers)), content):
             name, column = heads[count + group[0]]
             if len(group) > 1:
-                name = f"{together([answers[place].subject for place in group])}.{name.rpartition('.')[2]}"
+                owners = together([answers[index].subject for index in group])
+                name = f"{owners}.{name.rpartition('.')[2]}"
             shown.append((name, column))
         return shown
 
     def types(self) -> list[str]:
         """Return the type of each column: `number`, `list`, or `text`, also where words occur among numbers."""
         types = ["list" if head.listed else "number" for head in self.heads]
-        for place, numbers in enumerate(self._numbers):
+        for index, numbers in enumerate(self._numbers):
             if not np.isfinite(numbers).all():
-                types[place] = "text"
+                types[index] = "text"
         return types
 
     def blocks(self, rows: range) -> Iterator[range]:
@@ -144,51 +145,57 @@ class Sweep:
 
     def block(self, rows: range) -> list[Design]:
         """Return the rows of a block."""
-        found = self._study.of(self._columns(rows))
+        results = self._study.of(self._columns(rows))
         lacking = [None] * len(self._study.answers)
         heads = self.heads[len(self._keys) :]
-        columns = (
-            _in_unit(column, head)
-            for column, head in zip(zip(*(one.values or lacking for one in found)), heads)
-        )
-        each = zip(rows, self.inputs(rows), zip(*columns), found)
-        return [
-            Design(row + 1, (*inputs, *values), self._texts(one))
-            for row, inputs, values, one in each
-        ]
+        values_of_rows = [result.values or lacking for result in results]
+        columns = [_in_unit(column, head) for column, head in zip(zip(*values_of_rows), heads)]
+        designs = []
+        for row, inputs, values, result in zip(rows, self.inputs(rows), zip(*columns), results):
+            designs.append(Design(row + 1, (*inputs, *values), self._texts(result)))
+        return designs
 
     def inputs(self, rows: Sequence[int]) -> Iterable[tuple[Cell, ...]]:
         """Return the values of the inputs in these rows, counted from 0."""
-        cells: list[list[Cell]] = []
+        cells_of_columns: list[list[Cell]] = []
         for head, column in zip(self.heads, self._columns(rows)):
-            shown = convert(column.numbers[column.places], head.kind, head.unit) + 0.0
-            each = enumerate(shown.tolist())
-            cells.append([one if math.isfinite(one) else column.text(row) for row, one in each])
-        return zip(*cells)
+            in_unit = convert(column.numbers[column.indices], head.kind, head.unit) + 0.0
+            column_cells: list[Cell] = []
+            for row, number in enumerate(in_unit.tolist()):
+                column_cells.append(number if math.isfinite(number) else column.text(row))
+            cells_of_columns.append(column_cells)
+        return zip(*cells_of_columns)
 
     def _columns(self, rows: Sequence[int]) -> list[KeyColumn]:
         """Return the values of the keys in these rows, counted from 0."""
-        return list(
-            map(KeyColumn, self.plan.inputs, self._numbers, self.plan.places(np.array(rows)))
-        )
+        value_numbers = self.plan.value_numbers(np.array(rows))
+        return list(map(KeyColumn, self.plan.inputs, self._numbers, value_numbers))
 
-    def _texts(self, found: DesignResult) -> tuple[str, ...]:
-        failure = found.failure or "; ".join(filter(None, (found.other_parts, *found.unjudged)))
-        unjudged = found.failure or found.unjudged
-        keeps = "no" if found.broken else "" if unjudged else "yes"
-        return (keeps, next(iter(found.broken), ""), failure)[-len(self.texts) :]
+    def _texts(self, result: DesignResult) -> tuple[str, ...]:
+        """Return the texts after the values: whether the limits are kept, the first that is not, and why."""
+        failure = result.failure or "; ".join(filter(None, (result.other_parts, *result.unjudged)))
+        if not self._study.limits:
+            return (failure,)
+        keeps = "yes"
+        if result.broken:
+            keeps = "no"
+        elif result.failure or result.unjudged:
+            keeps = ""
+        return keeps, next(iter(result.broken), ""), failure
 
 
 def _in_unit(column: Sequence[DesignValue], head: Head) -> list[DesignValue]:
     """Return values in the unit of their head; lists as tuples, None for a missing value."""
     if head.listed:
-        lists = (one if isinstance(one, tuple) else None for one in column)
-        return [
-            one and tuple(convert(part, head.kind, head.unit) + 0.0 for part in one)
-            for one in lists
-        ]
+        return [_list_in_unit(values, head) for values in column]
     numbers = convert(np.array(column, dtype=float), head.kind, head.unit) + 0.0
-    return [None if one != one else one for one in numbers.tolist()]
+    return [None if math.isnan(number) else number for number in numbers.tolist()]
+
+
+def _list_in_unit(values: DesignValue, head: Head) -> tuple[float, ...] | None:
+    if not isinstance(values, tuple):
+        return None
+    return tuple(convert(value, head.kind, head.unit) + 0.0 for value in values)
 
 
 # processes that compute its blocks
@@ -217,10 +224,10 @@ def computed_rows(
     """
     if dask is not None:
         blocks = _of_cluster(sweep, rows, dask, note)
+    elif jobs > 1:
+        blocks = _of_processes(sweep, rows, jobs)
     else:
-        blocks = (
-            _of_processes(sweep, rows, jobs) if jobs > 1 else map(sweep.block, sweep.blocks(rows))
-        )
+        blocks = map(sweep.block, sweep.blocks(rows))
     for block in blocks:
         yield from (row for row in block if row.number - 1 in rows)
 
@@ -228,9 +235,10 @@ def computed_rows(
 def likely_jobs(rows: int) -> int:
     """Return the number of processes on this computer that is worthwhile for so many rows."""
     # a scheduler may have left this process fewer cores than the machine has
-    cores = (
-        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    )
+    if hasattr(os, "sched_getaffinity"):
+        cores = len(os.sched_getaffinity(0))
+    else:
+        cores = os.cpu_count() or 1
     return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)
 
 
@@ -238,7 +246,8 @@ def _of_processes(sweep: Sweep, rows: range, jobs: int) -> Iterator[list[Design]
     """Yield blocks in order from processes that each compute every so-many-th; a full pipe makes them wait."""
     # isolated, so that none looks for modules in the working directory; a session of its own hears no interrupt
     code = f"import sys; sys.path[:] = {list(filter(None, sys.path))}; from kurbel.designs.sweep import work; work()"
-    command, pipe = [sys.executable, "-I", "-c", code], subprocess.PIPE
+    command = [sys.executable, "-I", "-c", code]
+    pipe = subprocess.PIPE
     processes = [
         subprocess.Popen(
             command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, start_new_session=True
@@ -253,7 +262,8 @@ def _of_processes(sweep: Sweep, rows: range, jobs: int) -> Iterator[list[Design]
         for _, process in zip(sweep.blocks(rows), cycle(processes)):
             assert process.stdout
             yield pickle.load(process.stdout)
-    except (OSError, EOFError, pickle.UnpicklingError):  # its ends of the pipes are closed
+    # its ends of the pipes are closed
+    except (OSError, EOFError, pickle.UnpicklingError):
         why = "--jobs 1 needs the least memory, and shows what is wrong"
         raise KurbelError(
             f"a worker process ended early, with status {process.wait()}; {why}"
@@ -275,23 +285,25 @@ def work() -> None:
             sys.stdout.buffer.flush()
 
 
-_known = lru_cache(maxsize=4)(Sweep)
+_sweep_of = lru_cache(maxsize=4)(Sweep)
 
 
 def _computed(spec: Spec, rows: range) -> list[Design]:
     """Return a block of a sweep, in a worker of a cluster, which makes a sweep only once."""
-    return _known(spec).block(rows)
+    return _sweep_of(spec).block(rows)
 
 
 def _of_cluster(
     sweep: Sweep, rows: range, address: str, note: Callable[[str], None]
 ) -> Iterator[list[Design]]:
     """Yield blocks in order from the workers of a cluster, with few of them ahead."""
-    blocks, waiting = sweep.blocks(rows), deque[Any]()
+    blocks = sweep.blocks(rows)
+    waiting: deque[Any] = deque()
     with _client(address) as client:
         while True:
             workers = len(client.nthreads())
-            for block in islice(blocks, max(_AHEAD * max(workers, 1) - len(waiting), 0)):
+            wanted_ahead = _AHEAD * max(workers, 1)
+            for block in islice(blocks, max(wanted_ahead - len(waiting), 0)):
                 waiting.append(client.submit(_computed, sweep.spec, block, pure=False))
             if not waiting:
                 return
@@ -314,17 +326,14 @@ def _client(address: str) -> Iterator[Any]:
     async def reached() -> None:
         await (await connect(address, timeout=_ANSWERS_WITHIN)).close()
 
-    logging.disable()  # of a lost scheduler it writes tracebacks
+    # of a lost scheduler it writes tracebacks
+    logging.disable()
     try:
-        asyncio.run(
-            reached()
-        )  # a client that reaches nothing waits 20 s at its end, and writes a traceback
+        # a client that reaches nothing waits 20 s at its end, and writes a traceback
+        asyncio.run(reached())
         client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
-    except (
-        OSError,
-        ValueError,
-        TypeError,
-    ) as error:  # no address, no answer in time, or a protocol that is not set up
+    # no address, no answer in time, or a protocol that is not set up
+    except (OSError, ValueError, TypeError) as error:
         first_line = str(error).partition("\n")[0]
         raise UsageError(f"--dask {address}: no scheduler responds there ({first_line})") from None
     try:

@@ -16,7 +16,7 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, answered, is_slow
+from kurbel.designs.answers import Answer, DesignValue, answered, is_slow
 from kurbel.designs.binding import Binder
 from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
@@ -81,99 +81,127 @@ def given_uncertainty(machine: Machine, more: KeyUncertainties = ()) -> Inputs |
 
     Raises MachineFileError or UsageError with all faults.
     """
-    origin, outside = machine.origin, [path_of(key) for key, _ in more]
-    spreads = [*(one for one in machine.uncertainty if path_of(one[0]) not in outside), *more]
+    origin = machine.origin
+    paths_outside = [path_of(key) for key, _ in more]
+    spreads = [pair for pair in machine.uncertainty if path_of(pair[0]) not in paths_outside]
+    spreads += more
     if not spreads or origin is None:
         return None
-    tree, wrong, texts = tree_of(origin), dict[str, str](), dict[str, str]()
+
+    # the texts of the keys in the file
+    tree = tree_of(origin)
+    faults: dict[str, str] = {}
+    texts: dict[str, str] = {}
     paths = [path_of(key) for key, _ in spreads]
     for key, _ in spreads:
         try:
             texts[key] = text_at(tree, key)
         except UsageError as error:
-            wrong[key] = str(error)
+            faults[key] = str(error)
         if paths.count(path_of(key)) > 1:
-            wrong[key] = "this key is given twice"
-    binder, found = Binder(origin, tuple(texts), list(texts.values())), []
+            faults[key] = "this key is given twice"
+
+    # their values and uncertainties, in SI
+    binder = Binder(origin, tuple(texts), list(texts.values()))
+    values, sizes = [], []
     for (key, text), kind in zip(texts.items(), binder.kinds):
         spread = dict(spreads)[key]
         try:
             value = parse_quantity(text, kind)
-            size = (
-                abs(value) * parse_ratio(spread)
-                if spread.endswith("%")
-                else parse_quantity(spread, kind)
-            )
-            found.append((value, size))
-            if not size > 0:
-                wrong[key] = f"it must be more than 0, got {spread}"
+            size = _size_of(spread, value, kind)
         except (UnitError, KeyError) as error:
-            wrong[key] = (
-                str(error)
-                if kind
-                else f"{text_in_one_line(text)!r} is not a number that could be uncertain"
-            )
-    if faults := [
-        f"--uncertainty {text_in_one_line(key)}: {wrong[key]}" for key in dict(more) if key in wrong
-    ]:
-        raise UsageError("; ".join(faults))
-    if wrong:
-        raise origin.error(
-            *located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong])
-        )
-    return Inputs(binder, tuple(texts), *np.array(found).T)
+            no_number = f"{text_in_one_line(text)!r} is not a number that could be uncertain"
+            faults[key] = str(error) if kind else no_number
+            continue
+        values.append(value)
+        sizes.append(size)
+        if not size > 0:
+            faults[key] = f"it must be more than 0, got {spread}"
+
+    faults_outside = [key for key in dict(more) if key in faults]
+    if faults_outside:
+        messages = [
+            f"--uncertainty {text_in_one_line(key)}: {faults[key]}" for key in faults_outside
+        ]
+        raise UsageError("; ".join(messages))
+    if faults:
+        in_file = [Fault(("uncertainty", key), fault) for key, fault in faults.items()]
+        raise origin.error(*located(origin.text, in_file))
+    return Inputs(binder, tuple(texts), np.array(values), np.array(sizes))
+
+
+def _size_of(spread: str, value: float, kind: str) -> float:
+    """Return an uncertainty in SI: with a unit, or in percent of the value."""
+    if spread.endswith("%"):
+        return abs(value) * parse_ratio(spread)
+    return parse_quantity(spread, kind)
 
 
 def uncertainties(
     inputs: Inputs, requested: Sequence[Answer], counted: Counted = iter
 ) -> list[Uncertain]:
     """Return the uncertainties of the key values that are numbers; counted: iterates over the parts of a sample."""
+    # each input shifted alone, by each step; the first row with none shifted
     units = np.eye(len(inputs.keys))
     steps = (_STEP, -_STEP, _STEP / 2, -_STEP / 2, 1.0, -1.0)
-    found, _ = _answers(
-        inputs, np.concatenate([0 * units[:1], *(step * units for step in steps)]), requested
-    )
-    there = np.isfinite(found[0])
-    values = found[0, there]
-    above, below, near_above, near_below, over, under = found[1:, there].reshape(
-        len(steps), len(units), -1
-    )
-    coarse, fine = (above - below) / (2 * _STEP), (near_above - near_below) / _STEP
+    shifts = np.concatenate([0 * units[:1], *(step * units for step in steps)])
+    rows, _ = _answers(inputs, shifts, requested)
+    is_number = np.isfinite(rows[0])
+    values = rows[0, is_number]
+    shifted = rows[1:, is_number].reshape(len(steps), len(units), -1)
+    above, below, near_above, near_below, over, under = shifted
+
+    # slopes in units of the uncertainties, extrapolated from both steps
+    coarse = (above - below) / (2 * _STEP)
+    fine = (near_above - near_below) / _STEP
     slopes = (4 * fine - coarse) / 3
     sizes = np.sqrt((slopes**2).sum(axis=0))
     shares = np.divide(slopes**2, sizes**2, out=np.zeros_like(slopes), where=sizes > 0)
+
+    # a key value that bends over the width of an uncertainty needs a sample
     bend = np.maximum(np.abs((over + under) / 2 - values), np.abs(fine - coarse))
-    straight = (bend <= np.maximum(_BEND * sizes, _ROUNDING * np.abs(values))).all(axis=0)
-    numeric = [one for one, is_there in zip(requested, there) if is_there]
-    linear = list(
+    allowed = np.maximum(_BEND * sizes, _ROUNDING * np.abs(values))
+    is_straight = (bend <= allowed).all(axis=0)
+    numeric = [answer for answer, counts in zip(requested, is_number) if counts]
+    of_first_order = list(
         map(Uncertain, numeric, values.tolist(), sizes.tolist(), map(tuple, shares.T.tolist()))
     )
-    sampled = _sampled(inputs, [one for one, holds in zip(linear, straight) if not holds], counted)
-    return [one if holds else next(sampled) for one, holds in zip(linear, straight)]
+    bent = [uncertain for uncertain, straight in zip(of_first_order, is_straight) if not straight]
+    sampled = _sampled(inputs, bent, counted)
+    return [
+        uncertain if straight else next(sampled)
+        for uncertain, straight in zip(of_first_order, is_straight)
+    ]
 
 
 def _sampled(inputs: Inputs, bent: Sequence[Uncertain], counted: Counted) -> Iterator[Uncertain]:
     """Yield the uncertainties of nonlinear key values from a sample; shares are the squares of correlations."""
-    requested = [one.answer for one in bent]
+    requested = [uncertain.answer for uncertain in bent]
     count = SLOW_SAMPLE if is_slow(inputs.binder.machine, requested) else SAMPLE
     shifts = np.vectorize(NormalDist().inv_cdf)(latin_hypercube(count, len(inputs.keys), 0))
-    parts = [_answers(inputs, part, requested) for part in counted(np.array_split(shifts, _PARTS))]
-    found = np.concatenate([values for values, _ in parts])
-    failures = [why for _, each in parts for why in each]
-    failed = (
-        f"{len(failures)} of {count} sampled machines fail and are ignored ({failures[0]})."
-        if failures
-        else ""
-    )
-    for one, values in zip(bent, found.T):
-        there = np.isfinite(values)
-        spread = float(values[there].std(ddof=1)) if there.sum() > 1 else math.nan
-        shares = (0.0,) * len(inputs.keys)
+    rows = []
+    failures: list[str] = []
+    for part in counted(np.array_split(shifts, _PARTS)):
+        part_rows, part_failures = _answers(inputs, part, requested)
+        rows.append(part_rows)
+        failures += part_failures
+    failed = ""
+    if failures:
+        failed = (
+            f"{len(failures)} of {count} sampled machines fail and are ignored ({failures[0]})."
+        )
+
+    for uncertain, column in zip(bent, np.concatenate(rows).T):
+        is_number = np.isfinite(column)
+        values = column[is_number]
+        spread = float(values.std(ddof=1)) if len(values) > 1 else math.nan
+        shares = [0.0] * len(inputs.keys)
         if spread > 0:
-            shares = tuple(
-                float(np.corrcoef(own, values[there])[0, 1]) ** 2 for own in shifts[there].T
-            )
-        yield Uncertain(one.answer, one.value, spread, shares, int(there.sum()), failed)
+            for number, input_shifts in enumerate(shifts[is_number].T):
+                shares[number] = float(np.corrcoef(input_shifts, values)[0, 1]) ** 2
+        yield Uncertain(
+            uncertain.answer, uncertain.value, spread, tuple(shares), len(values), failed
+        )
 
 
 def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tuple[Array, list[str]]:
@@ -182,11 +210,22 @@ def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tupl
     shifts: (machines, inputs), in uncertainties.
     """
     columns = inputs.binder.columns(inputs.values + shifts * inputs.spreads)
-    every = answered(inputs.binder, columns, requested)
-    lacking = [None] * len(requested)
-    rows = [lacking if isinstance(one, str) else one.values for one in every]
-    values = [[math.nan if isinstance(one, tuple) else one for one in row] for row in rows]
-    return np.array(values, dtype=float), [one for one in every if isinstance(one, str)]
+    rows = []
+    failures = []
+    for answers in answered(inputs.binder, columns, requested):
+        if isinstance(answers, str):
+            failures.append(answers)
+            rows.append([math.nan] * len(requested))
+        else:
+            rows.append([_as_number(value) for value in answers.values])
+    return np.array(rows, dtype=float), failures
+
+
+def _as_number(value: DesignValue) -> float:
+    """Return a key value as a number; a list, which has no uncertainty, and a missing value as nan."""
+    if value is None or isinstance(value, tuple):
+        return math.nan
+    return value
 
 
 def with_uncertainty(
@@ -213,56 +252,67 @@ def with_uncertainty(
         requested = [
             answer for answer in requested if (answer.subject, answer.quantity.id) in printed
         ]
-    found = uncertainties(inputs, requested, counted)
+    uncertain_values = uncertainties(inputs, requested, counted)
     notes = ["Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."]
-    if any(one.sample for one in found):
+    if any(uncertain.sample for uncertain in uncertain_values):
         notes.append(
             "Those with a sample size are too nonlinear for that and come from so many sampled machines; their "
             "shares are squared correlations, which add up to less than 100 % where a key value is not monotonic."
         )
-    notes += dict.fromkeys(one.failed for one in found if one.failed)
-    report = report.changed(lambda part: _with_table(part, found, inputs.keys, system))
+    notes += dict.fromkeys(uncertain.failed for uncertain in uncertain_values if uncertain.failed)
+    report = report.changed(lambda part: _with_table(part, uncertain_values, inputs.keys, system))
     return report._replace(notes=(*report.notes, *notes))
 
 
 def _numeric_answers(case: Case, command: str) -> list[Answer]:
     """Return the key values of a command that are numbers and depend on the inputs."""
-    return [
-        Answer(quantity, command, subject.name)
-        for subject in subjects_of(case, command)
-        for quantity, _ in subject.key_values(command)
-        if not (quantity.listed or quantity.residual)
+    answers = []
+    for subject in subjects_of(case, command):
+        for quantity, _ in subject.key_values(command):
+            is_number = not quantity.listed and not quantity.residual
+            if is_number:
+                answers.append(Answer(quantity, command, subject.name))
+    return answers
+
+
+def _with_table(
+    part: Part, uncertain_values: Iterable[Uncertain], keys: Sequence[str], system: str
+) -> Part:
+    """Return a part of a report with a table of the uncertainties of its key values, if there are any."""
+    of_part = [
+        uncertain
+        for uncertain in uncertain_values
+        if uncertain.answer.subject == part.name and uncertain.counts
+    ]
+    if not of_part:
+        return part
+    sized = [
+        (uncertain.answer.kind, uncertain.answer.quantity.family, abs(uncertain.value))
+        for uncertain in of_part
     ]
 
-
-def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], system: str) -> Part:
-    own = [one for one in found if one.answer.subject == part.name and one.counts]
-    if not own:
-        return part
-    units = units_of(
-        [(one.answer.kind, one.answer.quantity.family, abs(one.value)) for one in own], system
-    )
-    values = (convert(one.value, one.answer.kind, unit) for one, unit in zip(own, units))
-    spreads = (convert(one.spread, one.answer.kind, unit) for one, unit in zip(own, units))
-    shares = (
-        [round(100 * share, 1) for share in each] for each in zip(*(one.shares for one in own))
-    )
+    # a row for each key value: names, value, uncertainty, shares, size of the sample
+    names, values, spreads, samples = [], [], [], []
+    for uncertain, unit in zip(of_part, units_of(sized, system)):
+        quantity, kind = uncertain.answer.quantity, uncertain.answer.kind
+        names.append((quantity.id, quantity.symbol, unit or "1"))
+        values.append(convert(uncertain.value, kind, unit))
+        spreads.append(convert(uncertain.spread, kind, unit))
+        samples.append(uncertain.sample or None)
+    columns = [
+        Column("value", "value", "value", "", tuple(values), alone=6),
+        Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2),
+    ]
+    for number, key in enumerate(keys):
+        percent = tuple(round(100 * uncertain.shares[number], 1) for uncertain in of_part)
+        columns.append(Column(key, key, key, "%", percent, alone=2))
+    columns.append(Column("sample", "sample", "sample", "", tuple(samples), alone=2))
     table = PlaceTable(
         "uncertainty",
         "Standard uncertainty, and the share of each input in its square",
         ("key_value", "symbol", "unit"),
-        tuple(
-            (one.answer.quantity.id, one.answer.quantity.symbol, unit or "1")
-            for one, unit in zip(own, units)
-        ),
-        (
-            Column("value", "value", "value", "", tuple(values), alone=6),
-            Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2),
-            *(Column(key, key, key, "%", tuple(each), alone=2) for key, each in zip(keys, shares)),
-            Column(
-                "sample", "sample", "sample", "", tuple(one.sample or None for one in own), alone=2
-            ),
-        ),
+        tuple(names),
+        tuple(columns),
         headed=True,
     )
     return part._replace(place_tables=(*part.place_tables, table))

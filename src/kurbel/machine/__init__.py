@@ -7,14 +7,14 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import CYCLES, CrankAngle
 from kurbel.declared.forms.figures import (
     EXPECTATIONS,
     LIMITS,
@@ -29,35 +29,25 @@ from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
 from kurbel.declared.reading import REFUSED, text_in_one_line
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
-from kurbel.errors import Fault, RuleError, UsageError, refuse
-from kurbel.machine.crankshaft import (
-    BalanceShaft,
-    Counterweight,
-    Crankshaft,
-    Locomotive,
-    SharedCounterweights,
-)
-from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
-from kurbel.machine.ideal_cards import Diesel, Otto
-from kurbel.machine.indicator import Chamber, Rectangle
+from kurbel.errors import Fault, RuleError, refuse
+from kurbel.machine.cylinder import MOST_TURNS, Cylinder, counterweights, crowded
+from kurbel.machine.indicator import Chamber
 from kurbel.machine.origin import Origin
-from kurbel.machine.pumped import Gas, Pump
-from kurbel.machine.several import EqualCylinders, in_order, rounded_within_cycle
-from kurbel.machine.shaft_line import SHAFT, ShaftLine, ShaftPart, line_of, shaft_faults
-from kurbel.machine.turning import (
-    MOST_TURNS,
-    Coupling,
-    Effort,
-    Flywheel,
-    KnownDiagram,
-    KnownEffort,
-    Load,
-    Swing,
-    rules_of_cycle,
-)
-from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.near_words import did_you_mean
-from kurbel.traces.correct import Trace
+
+if TYPE_CHECKING:
+    from kurbel.machine.crankshaft import (
+        BalanceShaft,
+        Counterweight,
+        Crankshaft,
+        Locomotive,
+        SharedCounterweights,
+    )
+    from kurbel.machine.known_effort import KnownEffort
+    from kurbel.machine.pumped import Gas, Pump
+    from kurbel.machine.several import EqualCylinders
+    from kurbel.machine.shaft_line import ShaftLine, ShaftPart
+    from kurbel.machine.turning import Coupling, Flywheel, KnownDiagram, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
 
@@ -66,9 +56,75 @@ FORMAT = 1
 STANDARD_ATMOSPHERE = 101325.0
 
 
-def _names(cylinders: Sequence[Cylinder] | EqualCylinders) -> list[str]:
-    each = cylinders.cylinders if isinstance(cylinders, EqualCylinders) else cylinders
-    return [one.name or f"cylinder {number}" for number, one in enumerate(each, 1)]
+def _names(cylinders: tuple[Cylinder, ...] | EqualCylinders) -> list[str]:
+    listed = cylinders if isinstance(cylinders, (tuple, list)) else cylinders.cylinders
+    return [cylinder.name or f"cylinder {number}" for number, cylinder in enumerate(listed, 1)]
+
+
+def _flywheel() -> type[Flywheel]:
+    from kurbel.machine.turning import Flywheel
+
+    return Flywheel
+
+
+def _load() -> type[Load]:
+    from kurbel.machine.turning import Load
+
+    return Load
+
+
+def _known_effort() -> type[KnownEffort]:
+    from kurbel.machine.known_effort import KnownEffort
+
+    return KnownEffort
+
+
+def _coupling() -> type[Coupling]:
+    from kurbel.machine.turning import Coupling
+
+    return Coupling
+
+
+def _crankshaft() -> type[Crankshaft]:
+    from kurbel.machine.crankshaft import Crankshaft
+
+    return Crankshaft
+
+
+def _balance_shaft() -> type[BalanceShaft]:
+    from kurbel.machine.crankshaft import BalanceShaft
+
+    return BalanceShaft
+
+
+def _locomotive() -> type[Locomotive]:
+    from kurbel.machine.crankshaft import Locomotive
+
+    return Locomotive
+
+
+def _shaft_part() -> type[ShaftPart]:
+    from kurbel.machine.shaft_line import ShaftPart
+
+    return ShaftPart
+
+
+def _gas() -> type[Gas]:
+    from kurbel.machine.pumped import Gas
+
+    return Gas
+
+
+def _pump() -> type[Pump]:
+    from kurbel.machine.pumped import Pump
+
+    return Pump
+
+
+def _equal_cylinders() -> type[EqualCylinders]:
+    from kurbel.machine.several import EqualCylinders
+
+    return EqualCylinders
 
 
 class LoadCase(Record):
@@ -114,6 +170,8 @@ class Machine(Record):
         default=1.0,
         above=0,
         most=1,
+        example="0.88",
+        usual="0.85 to 0.92 for ordinary piston machines (R p. 611)",
     )
     ambient: float = field(
         "pressure",
@@ -142,7 +200,7 @@ class Machine(Record):
     _cylinders = alternative(
         OneOf(
             Listing(RecordForm(Cylinder, inline_too=True), called="cylinder"),
-            RecordForm(EqualCylinders),
+            RecordForm(_equal_cylinders),
         ),
         "Several cylinders as a list, or equal ones as one mapping; their keys are then not allowed at the top level",
         absent="one cylinder, flat",
@@ -153,27 +211,27 @@ class Machine(Record):
         "Order in which the cylinders fire, at equal intervals over the cycle; sets `crank_position`",
         absent="positions as given",
     )
-    flywheel: Flywheel | None = field(Flywheel, "Flywheel", absent="no speed line")
+    flywheel: Flywheel | None = field(_flywheel, "Flywheel", absent="no speed line")
     load: Load | None = field(
-        OneOf(Choice(("constant",)), RecordForm(Load)),
+        OneOf(Choice(("constant",)), RecordForm(_load)),
         "Resistance at the shaft",
         absent="constant",
         gives=lambda given: {"load": None if given["load"] == "constant" else given["load"]},
     )
     effort: KnownDiagram | None = field(
-        RecordForm(KnownEffort),
+        RecordForm(_known_effort),
         "A given turning-moment diagram, instead of cylinders",
         absent="from the cylinders",
     )
     coupling: Coupling | None = field(
-        Coupling, "Elastic coupling to a driven moment of inertia", absent="rigid"
+        _coupling, "Elastic coupling to a driven moment of inertia", absent="rigid"
     )
     crankshaft: Crankshaft | None = field(
-        Crankshaft, "One throw between bearings A and B", absent="no strength check"
+        _crankshaft, "One throw between bearings A and B", absent="no strength check"
     )
     counterweights: SharedCounterweights | tuple[Counterweight, ...] = counterweights()
     balance_shafts: tuple[BalanceShaft, ...] = field(
-        [BalanceShaft],
+        [RecordForm(_balance_shaft)],
         "Balance shafts, turning once, twice, … per turn of the crank, with or against it",
         default=(),
     )
@@ -184,10 +242,10 @@ class Machine(Record):
         absent="the middle of the outer cylinders",
     )
     locomotive: Locomotive | None = field(
-        Locomotive, "Driven wheels, for hammer blow and swaying couple", absent="no locomotive"
+        _locomotive, "Driven wheels, for hammer blow and swaying couple", absent="no locomotive"
     )
     shaft: ShaftLine | None = field(
-        SHAFT,
+        Listing(OneOf(Choice(("ground", "flywheel")), RecordForm(_shaft_part))),
         "Shaft line for torsional vibration, in order along the shaft: masses, shaft segments between them, one pair "
         "of gears, `flywheel` (that of the machine) and `ground` (a fixed end)",
         absent="no torsional vibration",
@@ -217,9 +275,9 @@ class Machine(Record):
         absent="over, with no remark on the guide",
         also=("direction", "sense"),
     )
-    gas: Gas | None = field(Gas, "The gas that a compressor draws in", absent="volumes only")
+    gas: Gas | None = field(_gas, "The gas that a compressor draws in", absent="volumes only")
     pump: Pump | None = field(
-        Pump,
+        _pump,
         "Slip, liquid, pipes and vessels of a pump; its driven pistons are then those of pumps",
         absent="no pipes",
     )
@@ -246,14 +304,27 @@ class Machine(Record):
         cylinder: Cylinder | None = None,
         cylinders: tuple[Cylinder, ...] | EqualCylinders = (),
         firing_order: tuple[int, ...] | None = None,
-        shaft: tuple[ShaftPart, ...] | None = None,
+        shaft: tuple[ShaftPart | str, ...] | None = None,
         **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
         given = (cylinder,) if cylinder else cylinders
-        faults = shaft_faults(shaft, _names(given)) if shaft else []
+        faults: list[Fault] = []
+        if shaft:
+            from kurbel.machine.shaft_line import ShaftLine, line_of, shaft_faults
+
+            faults = shaft_faults(shaft, _names(given))
         try:
-            given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
+            if cylinder and not firing_order:
+                given = (
+                    replace(cylinder, crank_position=0.0)
+                    if cylinder.crank_position is None
+                    else cylinder,
+                )
+            else:
+                from kurbel.machine.several import in_order
+
+                given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
             if shaft:
                 keys["shaft"] = ShaftLine((), ()) if faults else line_of(shaft, _names(given))
             named = tuple(replace(one, name=name) for one, name in zip(given, _names(given)))
@@ -271,11 +342,11 @@ class Machine(Record):
             given.get("cylinders", (given.get("cylinder", REFUSED),)),
         )
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
-        known = (
-            shaft_faults(shaft, _names(cylinders))
-            if isinstance(shaft, tuple) and not unknown
-            else []
-        )
+        known: list[Fault] = []
+        if isinstance(shaft, tuple) and not unknown:
+            from kurbel.machine.shaft_line import shaft_faults
+
+            known = shaft_faults(shaft, _names(cylinders))
         return super().faults_of_some(given) + known
 
     def rules(self) -> Iterator[Rule]:
@@ -291,27 +362,22 @@ class Machine(Record):
                 inside = ("tandem", number - 1) if number else ()
                 rules = piston.indicator_rules(self.cycle_of_piston(cylinder, number), self.ambient)
                 yield from (rule.below("cylinders", index, *inside) for rule in rules)
-            of_yoke = (
-                cylinder.mechanism.pin_diameter
-                if isinstance(cylinder.mechanism, ScotchYoke)
-                else None
-            )
-            rubbing = (
-                cylinder.friction.rules_beside(self.crankshaft, of_yoke)
-                if cylinder.friction
-                else ()
-            )
-            yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
+            if cylinder.friction:
+                rubbing = cylinder.friction.rules_beside(
+                    self.crankshaft, cylinder.mechanism.rubbing_pin
+                )
+                yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
         yield from crowded(self.cylinders)
         for key, diagram in (
             ("effort", self.effort),
             ("load", self.load.diagram if self.load else None),
         ):
-            yield from (
-                rule.below(key)
-                for rule in rules_of_cycle(diagram, self._common_cycle, self.revolutions)
-            )
-        if isinstance(self.effort, Swing):
+            if diagram:
+                yield from (
+                    rule.below(key)
+                    for rule in diagram.rules_of_cycle(self._common_cycle, self.revolutions)
+                )
+        if self.effort and self.effort.alone:
             message = (
                 "needs the effort over the angle; of this one the swing of energy alone is given"
             )
@@ -400,10 +466,9 @@ class Machine(Record):
     @property
     def trace_files(self) -> tuple[str, ...]:
         """The files that the traces of the machine, or its effort, were read from."""
-        files = (
-            one.files for one in (*self.chambers, self.effort) if isinstance(one, (Trace, Effort))
+        return tuple(
+            dict.fromkeys(chain(*(one.files for one in (*self.chambers, self.effort) if one)))
         )
-        return tuple(dict.fromkeys(chain(*files)))
 
     def inclination_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""
@@ -430,60 +495,3 @@ class Machine(Record):
         if not any(piston.indicator for piston in cylinder.pistons):
             return "no pressure loads the crankshaft; give 'bore' and 'indicator'"
         return ""
-
-
-def firings(machine: Machine) -> list[tuple[float, int]]:
-    """Return (crank angle in degrees, number of the cylinder) for every ignition of a cycle, in order."""
-    cycle = 360 * machine.revolutions
-    found = []
-    for number, cylinder in enumerate(machine.cylinders, 1):
-        mechanism, each = (
-            cylinder.mechanism,
-            list[tuple[int, bool]](),
-        )  # of every end that fires its turns, and which
-        four = machine.cycle_of(cylinder) == "four-stroke"
-        if four and mechanism.slides and not any(one.chambers for one in cylinder.pistons):
-            each.append((2, False))
-        for index, piston in enumerate(cylinder.pistons):
-            turns = CYCLES[machine.cycle_of_piston(cylinder, index)]
-            for end, chamber in piston.chambers.items():
-                # one pressure on every stroke does no work; other cards of two strokes may be those of steam or a pump
-                idle = isinstance(chamber, Rectangle) and chamber.mean <= 0
-                if isinstance(chamber, (Otto, Diesel)) or (turns == 2 and not idle):
-                    each.append((turns, end == "crank_end"))
-        for turns, outer in each:
-            first = mechanism.dead_centres()[outer] + cylinder.crank_position
-            found += [
-                (rounded_within_cycle(turn + first, float(cycle)), number)
-                for turn in range(0, cycle, 360 * turns)
-            ]
-    return sorted(found)
-
-
-def of_cycle(machine: Machine, number: int) -> Machine:
-    """Return the machine with one cycle, counted from 1, of every trace that has several.
-
-    Raises UsageError if no trace has several cycles, or one has fewer.
-    """
-    counts: list[int] = []
-    alone: dict[int, Trace] = {}  # a mirrored end stays the same trace
-    cylinders = []
-    for cylinder in machine.cylinders:
-        pistons = []
-        for index, piston in enumerate(cylinder.pistons):
-            period = 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]
-            ends: dict[str, Any] = {}
-            for end, chamber in piston.chambers.items():
-                if isinstance(chamber, Trace) and (count := len(chamber.over(period).samples)) > 1:
-                    counts.append(count)
-                    ends[end] = alone.setdefault(
-                        id(chamber), chamber.of_cycle(min(number, count), period)
-                    )
-            shown = replace(piston.indicator, **ends) if piston.indicator else None
-            pistons.append(replace(piston, indicator=shown))
-        cylinders.append(replace(cylinder, pistons=tuple(pistons)))
-    if not counts:
-        raise UsageError("--cycle: no trace of this machine has several cycles; leave it out")
-    if number > min(counts):
-        raise UsageError(f"--cycle {number}: there are {min(counts)} cycles, counted from 1")
-    return replace(machine, cylinders=tuple(cylinders))

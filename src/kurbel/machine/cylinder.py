@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kurbel.arrays import Truth
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import CYCLES, CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.record import (
     FieldValue,
@@ -21,8 +21,6 @@ from kurbel.declared.record import (
     field,
     first_of,
 )
-from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
-from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.parts import (
     ConnectingRod,
     Friction,
@@ -34,12 +32,15 @@ from kurbel.machine.parts import (
     RodPoint,
     TandemPiston,
 )
-from kurbel.machine.valve import Valve
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
-from kurbel.mechanisms.scotch_yoke import ScotchYoke
-from kurbel.traces.correct import CYCLES as CYCLES
 
+if TYPE_CHECKING:
+    from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
+    from kurbel.machine.valve import Valve
+
+MOST_TURNS = 100
+"""Turns of the shaft after which everything repeats, at most."""
 _SLIDING = ("inclination", "masses", "friction", "ram_force")
 """Keys, apart from those of pistons, of a cylinder whose output slides."""
 
@@ -54,10 +55,46 @@ _OTHER_NAMES = {
 """Common name of a mechanism -> the word of the machine file."""
 
 
+_ROD_ON_ROD = (
+    "a rod on the knuckle pin of a master rod has no key: all rods count as on the crank pin, "
+    "which cylinders share that have a 'bank_angle' each and no 'crank_position'"
+)
+_SPRING = (
+    "a spring on what slides has no key; a straight card on a piston of 1 m2 has its force: "
+    "'bore: 1128.379167 mm', and in 'indicator.head_end' 'unit: Pa', "
+    "'expansion: [[0, F1], [1, F2]]', 'compression: [[1, F2], [0, F1]]' with forces in N"
+)
+_NO_KEYS = {
+    **dict.fromkeys(
+        ("link_rod", "master_rod", "master", "slave_rod", "articulated_rod"), _ROD_ON_ROD
+    ),
+    **dict.fromkeys(("spring", "spring_rate", "spring_stiffness"), _SPRING),
+}
+"""Word for what a cylinder may have, but no key describes -> what to write instead."""
+
+
+def _valve() -> type[Valve]:
+    from kurbel.machine.valve import Valve
+
+    return Valve
+
+
+def _shared_counterweights() -> type[SharedCounterweights]:
+    from kurbel.machine.crankshaft import SharedCounterweights
+
+    return SharedCounterweights
+
+
+def _counterweight() -> type[Counterweight]:
+    from kurbel.machine.crankshaft import Counterweight
+
+    return Counterweight
+
+
 def counterweights() -> FieldValue:
     """Return the field of the counterweights of a cylinder, next to its throw, or of the whole machine."""
     return field(
-        OneOf(RecordForm(SharedCounterweights), Listing(RecordForm(Counterweight))),
+        OneOf(RecordForm(_shared_counterweights), Listing(RecordForm(_counterweight))),
         "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
         default=(),
     )
@@ -73,6 +110,8 @@ class Cylinder(Record):
     ram_force, moment: what the output works against, where it slides or only swings. Raises
     RuleError for parts that the mechanism cannot have.
     """
+
+    UNWRITTEN = _NO_KEYS
 
     mechanism: Mechanism = field(
         Variant("slider-crank", MECHANISMS, _OTHER_NAMES),
@@ -144,7 +183,7 @@ class Cylinder(Record):
         absent="none",
     )
     valve: Valve | None = field(
-        Valve,
+        _valve,
         "Slide or piston valve driven by an eccentric, which sets the events of `steam` cards",
         absent="none",
     )
@@ -271,17 +310,16 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
     reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
     unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
     yield Rule("crosshead", unguided, f"a {kind} has no {reason}; leave 'crosshead' out")
-    yoke = mechanism if isinstance(mechanism, ScotchYoke) else None
     for key in friction.of_pins:
-        without = not has_rod and (yoke is None or key == "crosshead_pin")
+        without = not has_rod and (key == "crosshead_pin" or not mechanism.rubs)
         yield Rule(key, without, f"a {kind} has no connecting rod; leave '{key}' out")
     for key, given in (("block", friction.block), ("guides", friction.guides)):
-        without = yoke is None and given is not None
+        without = given is not None and not mechanism.rubs
         yield Rule(key, without, f"a {kind} is no scotch-yoke; leave '{key}' out")
-    if yoke is not None and friction.guides is not None:
-        apart = yoke.guide_length
+    if mechanism.rubs and friction.guides is not None:
+        apart = mechanism.guide_distance
         yield Rule("guides", apart is None, "'guides' needs their distance; give 'guide_length'")
-        locks = apart is not None and 2 * friction.guides * yoke.crank >= apart
+        locks = apart is not None and 2 * friction.guides * mechanism.crank >= apart
         message = (
             "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
         )
@@ -296,28 +334,9 @@ def _of_events(cylinder: Cylinder) -> Iterator[Rule]:
         if chambers.get("crank_end") is chambers.get("head_end"):  # mirrored
             chambers.pop("crank_end", None)
         for end, card in chambers.items():
-            if isinstance(card, Steam):
-                valve = None if number else cylinder.valve
-                yield from (rule.below(*place, end, "steam") for rule in _of_card(card, valve))
-
-
-def _of_card(card: Steam, valve: Valve | None) -> Iterator[Rule]:
-    """Of the clearance the rule of the card itself, for events that it does not have yet."""
-    if valve is None:
-        missing = (
-            "'cut_off' is missing; give it here, or the cylinder a 'valve', which sets all events"
-        )
-        yield Rule((), card.cut_off is None, missing)
-        return
-    twice = "the 'valve' sets cut_off, release, compression and lead; leave them out"
-    for key in card.events:
-        yield Rule(key, True, twice, at_key=True)
-    message = (
-        "the valve shuts the exhaust before the dead centre, and compression needs a final volume"
-    )
-    yield Rule(
-        "clearance", (card.clearance == 0) & valve.compresses, f"{message}; give 'clearance'"
-    )
+            valve = None if number else cylinder.valve
+            shuts_early = None if valve is None else valve.compresses
+            yield from (rule.below(*place, end) for rule in card.rules_of_events(shuts_early))
 
 
 def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:

@@ -6,18 +6,16 @@ the stroke volume. Exponents are those of p V^n.
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any, ClassVar, Union
 
 import numpy as np
 
-from kurbel.arrays import Number
-from kurbel.declared.forms.values import NumberForm
+from kurbel.arrays import Number, Truth
+from kurbel.declared.forms.values import CLEARANCE, CLEARANCE_OR_NONE
 from kurbel.declared.record import FieldValue, Record, Rule, alternative, field
+from kurbel.machine.chamber import ChamberCard
 
-CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)
-"""A clearance volume over the stroke volume, within bounds for which p V^n can be computed."""
-CLEARANCE_OR_NONE = NumberForm(share_of="the stroke", least=1e-6, most=1e5, zero=True)
-"""The same if it may also be 0, which leaves the clearance out of the theory."""
 _CLEARANCE = "Clearance volume over stroke volume"
 AIR_EXPONENT = 1.4
 """Exponent of the adiabatic line of air."""
@@ -64,7 +62,7 @@ def _above_vacuum(lift: Number, **pressures: Number | None) -> Iterator[Rule]:
 
 def _diagram_factor() -> FieldValue:
     text = "p_i of the true card over that of the theoretical one, which is drawn lower about the back pressure"
-    return field("ratio", text, "κ_d", default=1.0, above=0, most=1)
+    return field("ratio", text, "κ_d", default=1.0, above=0, most=1, example="0.85")
 
 
 def _factor_notes(factor: float) -> tuple[str, ...]:
@@ -82,7 +80,7 @@ def _only_two_stroke(card: Record, cycle: str) -> Rule:
     return Rule((), cycle != "two-stroke", two)
 
 
-class Steam(Record):
+class Steam(ChamberCard, Record):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
 
     cut_off: None where a valve sets this and the other events (`kurbel.machine.valve`).
@@ -96,10 +94,16 @@ class Steam(Record):
         above=0,
         most=1,
         absent="the `valve` sets all events",
+        example="0.35",
     )
-    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
+    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c", example="0.05")
     release: float = field(
-        "ratio", "Fraction of the stroke at which the exhaust opens", default=1.0, above=0, most=1
+        "ratio",
+        "Fraction of the stroke at which the exhaust opens",
+        default=1.0,
+        above=0,
+        most=1,
+        example="0.95",
     )
     compression: float = field(
         "ratio",
@@ -107,6 +111,7 @@ class Steam(Record):
         default=0.0,
         least=0,
         below=1,
+        example="0.2",
     )
     lead: float = field(
         "ratio",
@@ -114,17 +119,37 @@ class Steam(Record):
         default=0.0,
         least=0,
         below=1,
+        example="0.01",
     )
     exponent: float = _exponent("Exponent of expansion and compression", "1, the hyperbola", 1.0)
     diagram_factor: float = _diagram_factor()
 
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
+    by_steam: ClassVar[bool] = True
+
+    @property
+    def exponents(self) -> tuple[Number, ...]:
+        """That of expansion and compression."""
+        return (self.exponent,)
 
     @property
     def events(self) -> list[str]:
         """The keys of the events that are given."""
         given = self._given()
         return [key for key in ("cut_off", "release", "compression", "lead") if key in given]
+
+    def rules_of_events(self, valve_compresses: Truth | None) -> Iterator[Rule]:
+        """Yield events that are missing without a valve, or given beside one; of the clearance the rule of the card."""
+        if valve_compresses is None:
+            missing = "'cut_off' is missing; give it here, or the cylinder a 'valve', which sets all events"
+            yield Rule("steam", self.cut_off is None, missing)
+            return
+        twice = "the 'valve' sets cut_off, release, compression and lead; leave them out"
+        for key in self.events:
+            yield Rule(("steam", key), True, twice, at_key=True)
+        message = "the valve shuts the exhaust before the dead centre, and compression needs a final volume"
+        no_volume = (self.clearance == 0) & valve_compresses
+        yield Rule(("steam", "clearance"), no_volume, f"{message}; give 'clearance'")
 
     @property
     def back_pressure(self) -> float:
@@ -151,12 +176,12 @@ class Steam(Record):
         yield from _above_vacuum(lift, admission=self.admission, exhaust=self.exhaust)
 
 
-class Compressor(Record):
+class Compressor(ChamberCard, Record):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance."""
 
     suction: float = _pressure("Pressure while the chamber fills")
     delivery: float = _pressure("Pressure while the chamber empties", also=("discharge",))
-    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
+    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c", example="0.05")
     exponent: float = _exponent("Exponent of compression and expansion", "1.4, air", AIR_EXPONENT)
     expansion_exponent: float | None = _exponent(
         "Exponent of the expansion", "that of the compression"
@@ -168,6 +193,17 @@ class Compressor(Record):
     )
 
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
+    notes: ClassVar[tuple[str, ...]] = ()
+    compresses: ClassVar[bool] = True
+
+    @property
+    def exponents(self) -> tuple[Number, ...]:
+        """Those of compression and expansion."""
+        return (self.exponent, self.of_expansion)
+
+    def loaded(self) -> "Compressor":
+        """Return the card with its valves at work."""
+        return replace(self, unloaded=False) if self.unloaded else self
 
     def rules(self) -> Iterator[Rule]:
         yield _order("delivery", self.delivery, "suction", self.suction)
@@ -192,18 +228,23 @@ class Compressor(Record):
         yield Rule((), (self.delivery < top) & (self.delivery >= left), full)
 
 
-class _Engine(Record):
+class _Engine(ChamberCard, Record):
     """The common part of the cards of combustion engines.
 
     exhaust: pressure of the exhaust stroke of a four-stroke cycle, None for that of the intake; a two-stroke engine
     changes its gas at the outer dead centre.
     """
 
+    burns: ClassVar[bool] = True
+
     intake: float = _pressure(
         "Pressure in the cylinder when compression begins, and while it fills"
     )
     peak: float | None = _pressure(
-        "Pressure of injection, reached at constant volume", absent="that at the end of compression"
+        "Pressure of injection, reached at constant volume",
+        absent="that at the end of compression",
+        example="33 at",
+        usual="30 to 35 at (R p. 610)",
     )
     _compression_ratio = alternative(
         "ratio",
@@ -237,6 +278,11 @@ class _Engine(Record):
     def rules(self) -> Iterator[Rule]:
         if self.peak is not None:
             yield _order("peak", self.peak, "intake", self.intake)
+
+    @property
+    def exponents(self) -> tuple[Number, ...]:
+        """Those of compression and expansion."""
+        return (self.exponent, self.expansion_exponent)
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -274,7 +320,9 @@ class _Engine(Record):
 class Otto(_Engine):
     """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume."""
 
-    peak: float = _pressure("Largest pressure, after combustion")
+    peak: float = _pressure(
+        "Largest pressure, after combustion", example="25 at", usual="about 25 at (R p. 609)"
+    )
 
 
 class Diesel(_Engine):
@@ -285,7 +333,7 @@ class Diesel(_Engine):
     """
 
     cut_off: float = field(
-        "ratio", "Fraction of the stroke at which injection ends", above=0, below=1
+        "ratio", "Fraction of the stroke at which injection ends", above=0, below=1, example="0.08"
     )
 
 

@@ -1,9 +1,11 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import reduce
-from typing import Any, ClassVar, Union
+from typing import TYPE_CHECKING, Any, ClassVar, Union
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from kurbel.arrays import Number
 from kurbel.declared.forms.figures import Bound
 from kurbel.declared.forms.structures import Keyed, OneOf, RecordForm
 from kurbel.declared.forms.values import (
+    CLEARANCE_OR_NONE,
     Choice,
     NumberForm,
     Points,
@@ -22,13 +25,16 @@ from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import DiagramPoint, UnitFactor, written_unit
 from kurbel.errors import Fault, refuse
-from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, IdealCard, Otto, Steam
-from kurbel.machine.measured import Measured
-from kurbel.traces.correct import Trace
+from kurbel.machine.chamber import ChamberCard
+
+if TYPE_CHECKING:
+    from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam
+    from kurbel.machine.measured import Measured
+    from kurbel.traces.correct import Trace
 
 
 @dataclass(frozen=True, eq=False)
-class Rectangle:
+class Rectangle(ChamberCard):
     """A card of horizontal lines, for any working cycle; pressures in Pa.
 
     level: the pressure on every stroke, None for the ambient; mean: the mean indicated pressure p_i, by which the
@@ -112,7 +118,7 @@ STROKES = {
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
-class Card(Record):
+class Card(ChamberCard, Record):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
     interpolate: `linear`, or `polytropic`: straight in log p over log V, which needs the clearance volume over
@@ -153,7 +159,10 @@ class Card(Record):
         ("linear", "polytropic"), "How points are joined", default="linear", absent="linear"
     )
     clearance: float | None = field(
-        CLEARANCE_OR_NONE, "Clearance over stroke volume, for `polytropic`", absent="not known"
+        CLEARANCE_OR_NONE,
+        "Clearance over stroke volume, for `polytropic`",
+        absent="not known",
+        example="0.08",
     )
     notes: tuple[str, ...] = ()
     drawn: bool = False
@@ -162,11 +171,11 @@ class Card(Record):
     def of_keys(
         cls,
         unit: UnitFactor | None = None,
-        drawn: "Drawn | None" = None,
+        drawn: Drawn | None = None,
         interpolate: str = "linear",
         clearance: float | None = None,
         **given: Any,
-    ) -> "Card | Rectangle":
+    ) -> Card | Rectangle:
         """Return the card that these keys of a machine file describe; raises RuleError with every fault."""
         by_planimeter = {name: given.pop(name) for name in ("area", "mean_height") if name in given}
         if drawn and by_planimeter:
@@ -272,17 +281,47 @@ class Constant(Record):
         )
 
 
+def _measured() -> type[Measured]:
+    from kurbel.machine.measured import Measured
+
+    return Measured
+
+
+def _steam() -> type[Steam]:
+    from kurbel.machine.ideal_cards import Steam
+
+    return Steam
+
+
+def _compressor() -> type[Compressor]:
+    from kurbel.machine.ideal_cards import Compressor
+
+    return Compressor
+
+
+def _otto() -> type[Otto]:
+    from kurbel.machine.ideal_cards import Otto
+
+    return Otto
+
+
+def _diesel() -> type[Diesel]:
+    from kurbel.machine.ideal_cards import Diesel
+
+    return Diesel
+
+
 _CHAMBER = Keyed(
     cases={
         "mean_pressure": NumberForm(
             "pressure", becomes=lambda pressure, _: Rectangle(mean=pressure)
         ),
         "constant": RecordForm(Constant),
-        "trace": RecordForm(Measured),
-        "steam": RecordForm(Steam),
-        "compressor": RecordForm(Compressor),
-        "otto": RecordForm(Otto),
-        "diesel": RecordForm(Diesel),
+        "trace": RecordForm(_measured),
+        "steam": RecordForm(_steam),
+        "compressor": RecordForm(_compressor),
+        "otto": RecordForm(_otto),
+        "diesel": RecordForm(_diesel),
     },
     otherwise=RecordForm(Card),
     beside=("diagram_factor", "unloaded"),
@@ -295,17 +334,13 @@ _ONE_PRESSURE = NumberForm(
     or_else=", or a card below it",
     becomes=lambda pressure, _: Rectangle(level=pressure),
 )
-Chamber = Union[Rectangle, Card, IdealCard, Trace]
+Chamber = Union[Rectangle, Card, "IdealCard", "Trace"]
 """The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
 
 
-def _loaded(chamber: object) -> object:
-    """Return a card as it is with its valves at work, for the other end."""
-    return (
-        replace(chamber, unloaded=False)
-        if isinstance(chamber, Compressor) and chamber.unloaded
-        else chamber
-    )
+def _mirrored(head_end: Chamber | None) -> dict[str, object]:
+    """Return the crank end that has the card of the head end, its valves at work."""
+    return {"crank_end": None if head_end is None else head_end.loaded()}
 
 
 class Indicator(Record):
@@ -333,9 +368,7 @@ class Indicator(Record):
         absent="open to the ambient",
         # each chamber's fractions count from its own dead centre, so that it is the same card
         gives=lambda given: (
-            {"crank_end": _loaded(given.get("head_end"))}
-            if given["crank_end"] == "mirrored"
-            else {}
+            _mirrored(given.get("head_end")) if given["crank_end"] == "mirrored" else {}
         ),
     )
     absolute: bool = False

@@ -9,6 +9,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf, RecordForm
 from kurbel.declared.forms.values import (
+    CLEARANCE,
     COLUMN_RANGE,
     FILE_PATH,
     Choice,
@@ -19,7 +20,6 @@ from kurbel.declared.forms.values import (
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.declared.units import DiagramPoint, UnitFactor
 from kurbel.errors import Fault, RuleError, refused
-from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
 from kurbel.traces.cycles import samples_of_file, whole_cycles
 from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout
@@ -141,7 +141,10 @@ class Measured(Columns):
         absent="with",
     )
     scale = alternative(
-        "ratio", "Pressure, in the unit, per 1 of the file, such as bar per volt", absent="1"
+        "ratio",
+        "Pressure, in the unit, per 1 of the file, such as bar per volt",
+        absent="1",
+        example="20",
     )
     offset = alternative("pressure", "Pressure added after scaling", absent="0 bar")
     pegging = alternative(
@@ -158,6 +161,7 @@ class Measured(Columns):
         "Clearance over stroke volume, for exponents and volumes",
         "ε₀",
         absent="not known",
+        example="0.06",
     )
     compression_ratio = alternative(
         "ratio",

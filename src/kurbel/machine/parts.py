@@ -1,5 +1,7 @@
 """The parts of a cylinder: moving masses, friction, resistance, a point of the rod, the piston."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -12,12 +14,12 @@ from kurbel.declared.forms.values import Choice, NumberForm
 from kurbel.declared.keys import Key
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field, first_of
 from kurbel.machine.indicator import Chamber, Indicator
-from kurbel.machine.pumped import Gas
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
+    from kurbel.machine.pumped import Gas
 
 
 class ConnectingRod(Record):
@@ -25,7 +27,14 @@ class ConnectingRod(Record):
 
     mass: float = field("mass", "Mass of the rod", least=0)
     share: float = field(
-        "ratio", "Reciprocating share of the mass", default=0.5, least=0, most=1, absent="1/2"
+        "ratio",
+        "Reciprocating share of the mass",
+        default=0.5,
+        least=0,
+        most=1,
+        absent="1/2",
+        example="1/2",
+        usual="1/2 to 2/3 (R p. 608)",
     )
     center_of_gravity: float | None = field(
         "length",
@@ -127,7 +136,7 @@ class Masses(Record):
         connecting_rod: float | ConnectingRod | None = None,
         rotating: float = 0.0,
         **parts: Any,
-    ) -> "Masses":
+    ) -> Masses:
         """Return the masses of these keys; each part is a mass or a tuple of masses."""
         sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in parts.items()}
         if connecting_rod is not None and not isinstance(connecting_rod, ConnectingRod):
@@ -158,7 +167,11 @@ class GasOnRings(Record):
     """Rings that the gas presses on the wall (Redtenbacher): in proportion to the pressure difference."""
 
     gas: float = field(
-        "ratio", "Pressure on the wall over the difference across the piston", "k", least=0
+        "ratio",
+        "Pressure on the wall over the difference across the piston",
+        "k",
+        least=0,
+        example="0.5",
     )
 
 
@@ -195,15 +208,27 @@ class Friction(Record):
     """Friction of the moving parts of a cylinder; what is None is left out."""
 
     crosshead: float | None = field(
-        "ratio", "Coefficient of friction of the crosshead on its guide", "f", least=0
+        "ratio",
+        "Coefficient of friction of the crosshead on its guide",
+        "f",
+        least=0,
+        usual="1/10 in Redtenbacher's example (D 7)",
     )
     rings: Rings | None = field(Rings, "Piston rings")
     constant: float | None = field(
-        "force", "Force opposing the motion, constant over the stroke", "F_0", least=0
+        "force",
+        "Force opposing the motion, constant over the stroke",
+        "F_0",
+        least=0,
+        example="500 N",
     )
     guide: Guide | None = field(Guide, "Shoe of the crosshead", needs="crosshead")
     crank_pin: float | None = field(
-        "ratio", "Coefficient of friction of the connecting rod on the crank pin", "f_Z", least=0
+        "ratio",
+        "Coefficient of friction of the connecting rod on the crank pin",
+        "f_Z",
+        least=0,
+        example="0.02",
     )
     crank_pin_diameter: float | None = field(
         "length",
@@ -219,6 +244,7 @@ class Friction(Record):
         "f_H",
         least=0,
         needs="crosshead_pin_diameter",
+        example="0.02",
     )
     crosshead_pin_diameter: float | None = field(
         "length", "Diameter of the crosshead pin", "d_H", above=0, needs="crosshead_pin"
@@ -232,7 +258,11 @@ class Friction(Record):
         needs="crosshead_pin",
     )
     journals: float | None = field(
-        "ratio", "Coefficient of friction of the journals in the main bearings", "f_j", least=0
+        "ratio",
+        "Coefficient of friction of the journals in the main bearings",
+        "f_j",
+        least=0,
+        example="0.02",
     )
     journal_diameter: float | None = field(
         "length",
@@ -264,7 +294,7 @@ class Friction(Record):
         given = (self.crank_pin, self.crosshead_pin, self.journals)
         return tuple(name for name, coefficient in zip(_PINS, given) if coefficient is not None)
 
-    def rules_beside(self, shaft: "Crankshaft | None", pin_of_yoke: float | None) -> Iterator[Rule]:
+    def rules_beside(self, shaft: Crankshaft | None, pin_of_yoke: float | None) -> Iterator[Rule]:
         """Yield a diameter that is needed and given nowhere, or given here and in the crankshaft.
 
         pin_of_yoke: diameter in m of the crank pin that a Scotch yoke gives.
@@ -365,6 +395,12 @@ class RodPoint(Record):
         )
 
 
+def _gas() -> type[Gas]:
+    from kurbel.machine.pumped import Gas
+
+    return Gas
+
+
 class Piston(Record):
     """A piston: bore and rods, and what the indicator shows on its two sides.
 
@@ -391,7 +427,7 @@ class Piston(Record):
         also=("pressure", "card", "trace"),
     )
     name: str = field(str, "Name of the piston", default="piston", absent="piston")
-    gas: Gas | None = field(Gas, "Gas that the piston draws in", absent="that of the machine")
+    gas: Gas | None = field(_gas, "Gas that the piston draws in", absent="that of the machine")
     lever_ratio: float = 1.0
 
     def rules(self) -> Iterator[Rule]:
@@ -412,7 +448,7 @@ class Piston(Record):
         return math.pi / 4 * (self.bore - self.crank_end_rod) * (self.bore + self.crank_end_rod)
 
     @property
-    def chambers(self) -> "dict[str, Chamber]":
+    def chambers(self) -> dict[str, Chamber]:
         """What the indicator shows, by the key of the end."""
         if self.indicator is None:
             return {}
@@ -447,6 +483,7 @@ class TandemPiston(Piston):
         least=-100,
         most=100,
         absent="1: on the same rod",
+        example="0.5",
     )
 
     def rules(self) -> Iterator[Rule]:

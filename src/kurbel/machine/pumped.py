@@ -46,6 +46,11 @@ class Gas(Record):
         example="1.4",
     )
 
+    @property
+    def mass_of_mole(self) -> float | None:
+        """Its molar mass in kg/mol."""
+        return None if self.gas_constant is None else GAS_CONSTANT / self.gas_constant
+
 
 class Liquid(Record):
     """What a pump moves."""
@@ -83,6 +88,7 @@ class Vessel(Record):
         least=0.5,
         most=2,
         absent="1, isothermal",
+        example="1.2",
     )
 
     def rules(self) -> Iterator[Rule]:
@@ -108,6 +114,7 @@ class Pipe(Record):
         least=0,
         most=1,
         absent="0, no friction",
+        example="0.03",
     )
     vessel: Vessel | None = field(Vessel, "Air vessel between pipe and pump", absent="none")
 
@@ -121,6 +128,7 @@ class Pump(Record):
         default=0.0,
         least=0,
         below=1,
+        example="0.03",
     )
     liquid: Liquid = field(Liquid, "What is pumped", default=Liquid(), absent="water")
     suction_pipe: Pipe | None = field(Pipe, "Pipe to the pump", absent="suction lift left out")

@@ -4,12 +4,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby, product
 
+from kurbel.crank_angle import CYCLES
 from kurbel.declared.forms.structures import RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER
 from kurbel.declared.record import Record, Rule, field
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
-from kurbel.machine.cylinder import CYCLES, Cylinder
+from kurbel.machine.cylinder import Cylinder
 
 
 class EqualCylinders(Record):
@@ -49,38 +50,51 @@ class EqualCylinders(Record):
     each: Cylinder = field(RecordForm(Cylinder, inline_too=True), "The keys of one cylinder")
 
     def rules(self) -> Iterator[Rule]:
-        positions, banks = self.crank_positions or (), self.bank_angles
-        number = f"{len(banks)} angles for {self.count} cylinders; give one for each bank or for each cylinder"
-        yield Rule("bank_angles", self.count % len(banks) != 0, number)
-        number = f"{len(positions)} angles for {self.count} cylinders; give one for each"
-        yield Rule("crank_positions", bool(positions) and len(positions) != self.count, number)
-        twice = bool(positions) and self.each.crank_position is not None
-        yield Rule(("each", "crank_position"), twice, "'crank_positions' sets it; leave it out")
+        banks = len(self.bank_angles)
+        fits = self.count % banks == 0
+        advice = f"{banks} angles for {self.count} cylinders; give one for each bank or for each cylinder"
+        yield Rule("bank_angles", not fits, advice)
+
+        positions = len(self.crank_positions or ())
+        fits = positions in (0, self.count)
+        advice = f"{positions} angles for {self.count} cylinders; give one for each"
+        yield Rule("crank_positions", not fits, advice)
+
+        is_set_twice = positions > 0 and self.each.crank_position is not None
+        advice = "'crank_positions' sets it; leave it out"
+        yield Rule(("each", "crank_position"), is_set_twice, advice)
 
     @property
     def cylinders(self) -> tuple[Cylinder, ...]:
         """Each with its name and its place; its crank position if that is given."""
-        each, angles = self.each, self.bank_angles * (self.count // len(self.bank_angles))
+        angles = self.bank_angles * (self.count // len(self.bank_angles))
         cylinders = []
         for index, angle in enumerate(angles):
-            bank, incline, along = angle - angles[0], each.inclination, each.axial_position
-            if bank and incline is not None:
-                incline = (incline + bank + 180.0) % 360.0 - 180.0
-            if self.spacing is not None:
-                along = self.spacing * angles[:index].count(angle) + (along or 0.0)
-            cylinders.append(
-                replace(
-                    each,
-                    name=f"{each.name or 'cylinder'} {index + 1}",
-                    crank_position=self.crank_positions[index]
-                    if self.crank_positions
-                    else each.crank_position,
-                    bank_angle=each.bank_angle + bank,
-                    inclination=incline,
-                    axial_position=along,
-                )
-            )
+            # the same bank angle occurs once for each cylinder of the bank before this one
+            in_bank = angles[:index].count(angle)
+            cylinders.append(self._cylinder(index, angle - angles[0], in_bank))
         return tuple(cylinders)
+
+    def _cylinder(self, index: int, bank_angle: float, in_bank: int) -> Cylinder:
+        """Return a cylinder; bank_angle: against the first bank; in_bank: its number in the bank, from 0."""
+        pattern = self.each
+        crank_position = pattern.crank_position
+        if self.crank_positions:
+            crank_position = self.crank_positions[index]
+        inclination = pattern.inclination
+        if bank_angle and inclination is not None:
+            inclination = (inclination + bank_angle + 180.0) % 360.0 - 180.0
+        axial_position = pattern.axial_position
+        if self.spacing is not None:
+            axial_position = self.spacing * in_bank + (axial_position or 0.0)
+        return replace(
+            pattern,
+            name=f"{pattern.name or 'cylinder'} {index + 1}",
+            crank_position=crank_position,
+            bank_angle=pattern.bank_angle + bank_angle,
+            inclination=inclination,
+            axial_position=axial_position,
+        )
 
 
 def in_order(
@@ -90,35 +104,46 @@ def in_order(
 
     order, cycle: those of the machine.
     """
-    if isinstance(cylinders, tuple):
-        if order:
-            return fired(cylinders, order, cycle, ("firing_order",))
-        free = [cylinder.crank_position is None for cylinder in cylinders]
-        at_pins = [
-            replace(one, crank_position=0.0) if alone else one
-            for one, alone in zip(cylinders, free)
-        ]
-        return in_even_turns(at_pins, free, cycle)
-    equal, each = cylinders, cylinders.cylinders
+    if isinstance(cylinders, EqualCylinders):
+        return _equal_in_order(cylinders, order, cycle)
+    if order:
+        return fired(cylinders, order, cycle, ("firing_order",))
+    is_free = [cylinder.crank_position is None for cylinder in cylinders]
+    at_pins = []
+    for cylinder in cylinders:
+        if cylinder.crank_position is None:
+            cylinder = replace(cylinder, crank_position=0.0)
+        at_pins.append(cylinder)
+    return in_even_turns(at_pins, is_free, cycle)
+
+
+def _equal_in_order(
+    equal: EqualCylinders, order: tuple[int, ...] | None, cycle: str
+) -> tuple[Cylinder, ...]:
+    """Return equal cylinders with their crank positions: by a firing order, as given, or all on one pin."""
     if order and (equal.firing_order or equal.crank_positions):
-        given = "crank positions are" if equal.crank_positions else "a firing order is"
-        refused(f"{given} also given in 'cylinders'; leave one of them out", "firing_order")
-    if order or equal.firing_order:
-        where: Path = ("cylinders", "firing_order") if equal.firing_order else ("firing_order",)
-        return fired(each, equal.firing_order or order or (), cycle, where)
+        what = "crank positions are" if equal.crank_positions else "a firing order is"
+        refused(f"{what} also given in 'cylinders'; leave one of them out", "firing_order")
+    if equal.firing_order:
+        return fired(equal.cylinders, equal.firing_order, cycle, ("cylinders", "firing_order"))
+    if order:
+        return fired(equal.cylinders, order, cycle, ("firing_order",))
     if equal.crank_positions:
+        # angles of less than a turn give the pins, and not the turn of the cycle
         only_pins = all(0 <= angle < 360 for angle in equal.crank_positions)
-        return in_even_turns(each, [only_pins] * equal.count, cycle)
+        return in_even_turns(equal.cylinders, [only_pins] * equal.count, cycle)
     if len(set(equal.bank_angles)) < equal.count:
         message = (
             "'firing_order' is missing: positions of the cranks; write for instance 'firing_order: 1-3-4-2', or "
             "'crank_positions', one for each cylinder"
         )
         refused(message, "cylinders")
+
     # on one pin each dead centre follows by the angle between the stroke lines
-    on_pin = [
-        replace(one, crank_position=(one.crank_position or 0.0) + one.bank_angle) for one in each
-    ]
+    on_pin = []
+    for cylinder in equal.cylinders:
+        position = (cylinder.crank_position or 0.0) + cylinder.bank_angle
+        on_pin.append(replace(cylinder, crank_position=position))
     return in_even_turns(on_pin, [True] * equal.count, cycle)
 
 
@@ -130,24 +155,25 @@ def fired(
     cycle: that of the machine; where: the place of the order, for errors. Raises RuleError if it does not name each
     cylinder once, and if crank positions are given, too.
     """
-    if len(order) != len(cylinders):
-        refused(f"it names {len(order)} cylinders, the machine has {len(cylinders)}", *where)
-    given = [
-        ("cylinders", index, "crank_position")
-        for index, one in enumerate(cylinders)
-        if one.crank_position
-    ]
+    count = len(cylinders)
+    if len(order) != count:
+        refused(f"it names {len(order)} cylinders, the machine has {count}", *where)
+    advice = "'firing_order' sets the crank positions; leave it out"
     refuse(
-        *(Fault(place, "'firing_order' sets the crank positions; leave it out") for place in given)
+        *(
+            Fault(("cylinders", index, "crank_position"), advice)
+            for index, cylinder in enumerate(cylinders)
+            if cylinder.crank_position
+        )
     )
-    longest = 360.0 * max(CYCLES[cylinder.cycle or cycle] for cylinder in cylinders)
-    late = [
-        (order.index(number) - order.index(1)) % len(order) for number in range(1, len(order) + 1)
-    ]
-    return tuple(
-        replace(one, crank_position=longest * turn / len(order))
-        for one, turn in zip(cylinders, late)
-    )
+    longest_cycle = 360.0 * max(CYCLES[cylinder.cycle or cycle] for cylinder in cylinders)
+    first = order.index(1)
+    in_place = []
+    for number, cylinder in enumerate(cylinders, 1):
+        intervals_after_first = (order.index(number) - first) % count
+        position = longest_cycle * intervals_after_first / count
+        in_place.append(replace(cylinder, crank_position=position))
+    return tuple(in_place)
 
 
 _TOGETHER = 12
@@ -164,33 +190,42 @@ def in_even_turns(
     The sum of the squared firing intervals is the least one; among equals the firing order reads smallest. Cylinder 1
     stays in its turn. free: whose crank positions tell no turn; cycle: that of the machine.
     """
-    firing = [place for place, one in enumerate(cylinders) if CYCLES[one.cycle or cycle] == 2]
-    choosing = [place for place in firing if free[place] and place > 0]
-    angles = {place: cylinders[place].crank_position for place in firing}
-    fixed = {place: angle for place, angle in angles.items() if place not in choosing}
-    for pin in (
-        _pins(cylinders, choosing) if len(firing) > _TOGETHER else [choosing] if choosing else []
-    ):
-        turns = product(*((angles[place], angles[place] + 360.0) for place in pin))
-        fixed = min(({**fixed, **dict(zip(pin, chosen))} for chosen in turns), key=_unevenness)
-    return tuple(
-        replace(one, crank_position=fixed[place]) if place in choosing else one
-        for place, one in enumerate(cylinders)
-    )
-
-
-def _pins(cylinders: Sequence[Cylinder], places: Sequence[int]) -> list[list[int]]:
-    """Return the places in the list of the cylinders that share a crank pin, pin by pin along the shaft."""
-    pins = {}
-    for place in places:
-        one = cylinders[place]
-        turned = round((one.bank_angle - one.crank_position) % 360.0, 6) % 360.0
-        pins[place] = one.axial_position or 0.0, turned
-    along = sorted(places, key=lambda place: pins[place][0])
-    each = [list(group) for _, group in groupby(along, lambda place: pins[place])]
-    return [
-        one[start : start + _ON_A_PIN] for one in each for start in range(0, len(one), _ON_A_PIN)
+    four_stroke = [
+        index for index, cylinder in enumerate(cylinders) if CYCLES[cylinder.cycle or cycle] == 2
     ]
+    choosing = [index for index in four_stroke if free[index] and index > 0]
+    angles = {index: cylinders[index].crank_position for index in four_stroke}
+
+    # groups are compared one after another, in each all combinations of turns
+    groups = [choosing] if choosing else []
+    if len(four_stroke) > _TOGETHER:
+        groups = _pins(cylinders, choosing)
+    chosen = {index: angle for index, angle in angles.items() if index not in choosing}
+    for group in groups:
+        turns = product(*((angles[index], angles[index] + 360.0) for index in group))
+        candidates = ({**chosen, **dict(zip(group, angles_of_turn))} for angles_of_turn in turns)
+        chosen = min(candidates, key=_unevenness)
+
+    in_turns = list(cylinders)
+    for index in choosing:
+        in_turns[index] = replace(cylinders[index], crank_position=chosen[index])
+    return tuple(in_turns)
+
+
+def _pins(cylinders: Sequence[Cylinder], numbers: Sequence[int]) -> list[list[int]]:
+    """Return the indices of the cylinders that share a crank pin, pin by pin along the shaft."""
+    pins = {}
+    for index in numbers:
+        cylinder = cylinders[index]
+        pin_angle = round((cylinder.bank_angle - cylinder.crank_position) % 360.0, 6) % 360.0
+        pins[index] = cylinder.axial_position or 0.0, pin_angle
+    along_the_shaft = sorted(numbers, key=lambda index: pins[index][0])
+    groups = []
+    for _, on_pin in groupby(along_the_shaft, lambda index: pins[index]):
+        indices = list(on_pin)
+        for start in range(0, len(indices), _ON_A_PIN):
+            groups.append(indices[start : start + _ON_A_PIN])
+    return groups
 
 
 def _unevenness(angles: Mapping[int, float]) -> tuple[float, list[int]]:
@@ -198,9 +233,11 @@ def _unevenness(angles: Mapping[int, float]) -> tuple[float, list[int]]:
     # rounded, since equal sums may differ by rounding
     squares = round(sum(interval * interval for interval in intervals(angles.values(), 720.0)), 6)
     first = angles[min(angles)]
-    return squares, sorted(
-        angles, key=lambda place: (rounded_within_cycle(angles[place] - first, 720.0), place)
-    )
+
+    def firing(index: int) -> tuple[float, int]:
+        return rounded_within_cycle(angles[index] - first, 720.0), index
+
+    return squares, sorted(angles, key=firing)
 
 
 def rounded_within_cycle(angle: float, cycle: float) -> float:
@@ -214,7 +251,6 @@ def intervals(angles: Iterable[float], cycle: float) -> list[float]:
     >>> intervals([450, 0], 720)
     [450.0, 270.0]
     """
-    found = sorted(rounded_within_cycle(angle, cycle) for angle in angles)
-    return [
-        float(round(after - one, 9)) for one, after in zip(found, (*found[1:], found[0] + cycle))
-    ]
+    firings = sorted(rounded_within_cycle(angle, cycle) for angle in angles)
+    following = [*firings[1:], firings[0] + cycle]
+    return [float(round(next_angle - angle, 9)) for angle, next_angle in zip(firings, following)]

@@ -7,10 +7,10 @@ of the cranks.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
-from kurbel.declared.forms.values import TEXT, Choice
+from kurbel.declared.forms.structures import Listing, OneOf
+from kurbel.declared.forms.values import TEXT
 from kurbel.declared.reading import REFUSED, Reported
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import Fault, Path, refuse
@@ -89,6 +89,7 @@ class ShaftPart(Record):
         "ρ",
         least=0,
         absent="7850 kg/m3, steel",
+        example="7850 kg/m3",
         needs="length",
     )
     loss_factor: float | None = field(
@@ -98,6 +99,7 @@ class ShaftPart(Record):
         least=0,
         most=2,
         absent="0",
+        example="0.01",
     )
     damping: float | None = field(
         "damping",
@@ -112,6 +114,7 @@ class ShaftPart(Record):
         "Speed ratio: speed after the gear over speed before it, in the order of the list",
         "u",
         above=0,
+        example="0.25",
     )
 
     word: str = ""
@@ -159,18 +162,6 @@ class ShaftPart(Record):
     def has_inertia(self) -> bool:
         """Whether it is a shaft segment that has an inertia of its own."""
         return self.length is not None and self.stiffness is None and self.density != 0
-
-
-SHAFT = Listing(
-    OneOf(
-        Choice(
-            (GROUND, FLYWHEEL),
-            means={GROUND: ShaftPart(word=GROUND), FLYWHEEL: ShaftPart(word=FLYWHEEL)},
-        ),
-        RecordForm(ShaftPart),
-    )
-)
-"""The form of a shaft line."""
 
 
 class ShaftSection(NamedTuple):
@@ -237,8 +228,16 @@ class ShaftLine:
         return any(GROUNDED in (segment.before, segment.behind) for segment in self.segments)
 
 
-def shaft_faults(parts: Sequence[ShaftPart | Reported], cylinders: Sequence[str]) -> list[Fault]:
+def _of_words(parts: Sequence[Any]) -> list[Any]:
+    """Return the items with a part in place of each word, `ground` or `flywheel`."""
+    return [ShaftPart(word=part) if isinstance(part, str) else part for part in parts]
+
+
+def shaft_faults(
+    given: Sequence[ShaftPart | str | Reported], cylinders: Sequence[str]
+) -> list[Fault]:
     """Return what is wrong with a list; if parts could not be read, only the faults of single other parts."""
+    parts = _of_words(given)
     faults, seen = [], set[str]()
     named = [
         (index, part.cylinder or ()) for index, part in enumerate(parts) if part is not REFUSED
@@ -315,13 +314,13 @@ def _of_order(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str]]:
     )
 
 
-def line_of(parts: Sequence[ShaftPart], cylinders: Sequence[str] = ()) -> ShaftLine:
+def line_of(given: Sequence[ShaftPart | str], cylinders: Sequence[str] = ()) -> ShaftLine:
     """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError.
 
     All is referred to the shaft of the cranks: inertia, damping and stiffness by the square of the ratio of speeds.
     """
-    refuse(*shaft_faults(parts, cylinders))
-    return _Assembly(parts).line
+    refuse(*shaft_faults(given, cylinders))
+    return _Assembly(_of_words(given)).line
 
 
 class _Assembly:

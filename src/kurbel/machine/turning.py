@@ -3,25 +3,19 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar, Literal
 
-import numpy as np
-
-from kurbel.arrays import Array
+from kurbel.crank_angle import CYCLES
 from kurbel.declared.forms.structures import OneOf
 from kurbel.declared.forms.values import NumberForm, Points, order_faults, size_faults, unit_name
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.declared.units import DiagramPoint, UnitFactor
 from kurbel.errors import Fault, refuse, refused
-from kurbel.machine.measured import Columns
+from kurbel.machine.cylinder import MOST_TURNS
 from kurbel.numerics.arithmetic import is_whole, some
-from kurbel.traces.correct import CYCLES
-from kurbel.traces.cycles import Laps, samples_of_file
 
 CAST_IRON = 7250.0
 """Density in kg/m³ of what rims are cast of."""
-MOST_TURNS = 100
-"""Turns of the shaft after which everything repeats, at most."""
 _HIGHEST = 1000
 """Periods per turn of a harmonic; each is followed, so that more of them take long."""
 
@@ -77,6 +71,7 @@ class Rim(Record):
         above=0,
         absent="7250 kg/m³, cast iron",
         also=("material",),
+        example="7250 kg/m3",
     )
     allowable_tension: float | None = field(
         "stress",
@@ -198,6 +193,10 @@ class Flywheel(Record):
         yield Rule((), self.inertia is None and self.fluctuation is None, needed)
 
 
+def _cycle_name(cycle: str, turns: int) -> str:
+    return f"a {cycle} cycle" if turns == CYCLES[cycle] else ""
+
+
 @dataclass(frozen=True, eq=False)
 class Effort:
     """A turning-moment diagram: torques in N m over crank angles in degrees, from 0 to 360 or 720, ascending.
@@ -209,6 +208,26 @@ class Effort:
     torques: tuple[float, ...]
     files: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    alone: ClassVar[Literal[False]] = False
+
+    @property
+    def size(self) -> str:
+        """How much is given."""
+        return f"a diagram of {len(self.angles)} points"
+
+    def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine, of so many turns of the shaft."""
+        last, whole = self.angles[-1], 360.0 * turns
+        write = (
+            "cycle: four-stroke" if turns < 2 and last == 720 else f"cycle_turns: {last / 360:g}"
+        )
+        has = f"{_cycle_name(cycle, turns) or 'the cycle'} has {whole:g} deg; write '{write}' at the top"
+        # one of a single turn repeats in the second one of a four-stroke cycle
+        yield Rule(
+            "file" if self.files else "points",
+            whole % last != 0,
+            f"the diagram runs to {last:g} deg, {has}",
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,6 +239,21 @@ class Harmonics:
 
     mean: float
     terms: tuple[tuple[float, float, float], ...]
+    files: ClassVar[tuple[str, ...]] = ()
+    notes: ClassVar[tuple[str, ...]] = ()
+    alone: ClassVar[Literal[False]] = False
+
+    @property
+    def size(self) -> str:
+        """How much is given."""
+        return f"{len(self.terms)} harmonics"
+
+    def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine, of so many turns of the shaft."""
+        name = _cycle_name(cycle, turns)
+        order = next((order for order, _, _ in self.terms if not is_whole(order * turns)), 0)
+        again = f"order {order:g} does not repeat after {name or f'{turns} turns'}; orders count periods per turn"
+        yield Rule("harmonics", order > 0, again)
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,6 +266,13 @@ class Swing:
     swing: float | None = None
     coefficient: float | None = None
     mean: float | None = None
+    files: ClassVar[tuple[str, ...]] = ()
+    notes: ClassVar[tuple[str, ...]] = ()
+    alone: ClassVar[Literal[True]] = True
+
+    def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
+        """Yield no rule: it fits every cycle."""
+        return iter(())
 
     def energy(self, turns: int) -> float | None:
         """Return ΔE in J, with the work of a cycle of so many turns, A = 2π turns M_m."""
@@ -244,23 +285,6 @@ class Swing:
 
 KnownDiagram = Effort | Harmonics | Swing
 """A turning effort that is known from elsewhere."""
-
-
-def rules_of_cycle(diagram: KnownDiagram | None, cycle: str, turns: int) -> Iterator[Rule]:
-    """Yield what in a diagram does not fit the cycle of the machine, of so many turns of the shaft."""
-    name = f"a {cycle} cycle" if turns == CYCLES[cycle] else ""
-    if isinstance(diagram, Effort):
-        last, whole = diagram.angles[-1], 360.0 * turns
-        write = (
-            "cycle: four-stroke" if turns < 2 and last == 720 else f"cycle_turns: {last / 360:g}"
-        )
-        ends = f"the diagram runs to {last:g} deg, {name or 'the cycle'} has {whole:g} deg; write '{write}' at the top"
-        # one of a single turn repeats in the second one of a four-stroke cycle
-        yield Rule("file" if diagram.files else "points", whole % last != 0, ends)
-    if isinstance(diagram, Harmonics):
-        order = next((order for order, _, _ in diagram.terms if not is_whole(order * turns)), 0)
-        again = f"order {order:g} does not repeat after {name or f'{turns} turns'}; orders count periods per turn"
-        yield Rule("harmonics", order > 0, again)
 
 
 class InUnit(float):
@@ -342,10 +366,18 @@ class Load(Record):
     """
 
     power: float | None = field(
-        "ratio", "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k", key="power_law"
+        "ratio",
+        "Torque proportional to ω^k: 2 for a fan, 0 for a hoist",
+        "k",
+        key="power_law",
+        example="2",
     )
     slip: float | None = field(
-        "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
+        "ratio",
+        "Slip of a grid-tied generator at mean torque; stiff for small slip",
+        "s",
+        above=0,
+        example="0.03",
     )
     _unit = UNIT
     _points = POINTS._replace(
@@ -380,126 +412,6 @@ class Load(Record):
     def varies(self) -> bool:
         """Whether it varies over the turn or with the speed."""
         return self.diagram is not None or self.slip is not None or some(self.power != 0)
-
-
-class KnownEffort(Columns):
-    """What becomes an `Effort`, `Harmonics` or a `Swing`."""
-
-    what = "torque"
-    unit = UNIT
-    points = POINTS._replace(text=f"{POINTS.text}; or give `file` or `harmonics`", instead="file")
-    file = Columns.file._replace(
-        text="File with a column of angles in degrees and one of torques",
-        needs="unit",
-        example="effort.csv",
-    )
-    torque_column = alternative(
-        int, "Column of the torques, counted from 1", absent="2", needs="file"
-    )
-    angle_zero = alternative(
-        "angle",
-        "Angle of the firing or inner dead centre in the file",
-        absent="0 deg",
-        needs="file",
-    )
-    mean = MEAN
-    harmonics = HARMONICS
-    swing = alternative(
-        "energy", "Swing of energy, where nothing else of the effort is known", "ΔE", least=0
-    )
-    coefficient = alternative(
-        "ratio",
-        "Coefficient of fluctuation of energy: the swing over the work of a cycle, which the mean torque gives",
-        "ΔE/A",
-        least=0,
-        instead="swing",
-        needs="mean",
-    )
-
-    @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
-        forms = [
-            name
-            for name in ("points", "file", "harmonics", "swing", "coefficient")
-            if name in given
-        ]
-        message = "give one of 'points', 'file' or 'harmonics', or 'swing', or 'coefficient' beside 'mean'"
-        yield Rule((), len(forms) != 1 and forms != ["swing", "coefficient"], message)
-        level = "mean" in given and forms in (["points"], ["file"])
-        yield Rule(
-            "mean",
-            level,
-            f"belongs to harmonics, a swing or a coefficient; '{forms[0] if forms else ''}' has its own",
-        )
-        bare = "unit" not in given and isinstance(given.get("mean"), InUnit)
-        yield Rule(
-            "mean",
-            bare,
-            f"{given.get('mean', 0.0):g} has no unit; write it with one, such as '500 N m'",
-        )
-        yield harmonics_need_a_unit(given)
-        yield from super().rules_of_keys(given)
-
-    @classmethod
-    def of_keys(
-        cls,
-        unit: UnitFactor = (1.0, 1.0),
-        points: list[DiagramPoint] | None = None,
-        file: str | None = None,
-        harmonics: list[DiagramPoint] | None = None,
-        mean: float | None = None,
-        swing: float | None = None,
-        coefficient: float | None = None,
-        angle_zero: float = 0.0,
-        **layout: Any,
-    ) -> KnownDiagram:
-        """Return the effort that these keys describe, its file read; raises RuleError."""
-        if harmonics is not None:
-            return harmonics_of(unit, mean or 0.0, harmonics)
-        if swing is not None or coefficient is not None:
-            return Swing(swing, coefficient, None if mean is None else in_unit(mean, unit))
-        if file is None:
-            return points_of(unit, points or [])
-        up, down = unit
-        layout_of_file = cls.layout(layout)
-        samples = samples_of_file(
-            file,
-            layout_of_file,
-            "torque",
-            lambda torques: torques * up / down,
-            most_turns=MOST_TURNS,
-        )
-        if len(samples.values) > 1:
-            lap = samples.angles[-1] - samples.angles[0]
-            refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")
-        angles, torques = _from_zero(samples, angle_zero)
-        closed = (
-            ("the closing sample is missing; the first one closes the cycle",)
-            if samples.completed
-            else ()
-        )
-        return Effort(
-            tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed)
-        )
-
-
-def _from_zero(samples: Laps, angle_zero: float) -> tuple[Array, Array]:
-    """Return the angles (n,) in degrees from 0 to the end of the cycle, and the torques (n,), straight in between."""
-    period = float(round(samples.angles[-1] - samples.angles[0]))
-    begun = samples.angles - angle_zero
-    begun = begun - period * np.ceil(begun[0] / period)  # begins in (−period, 0]
-    angles, torques = np.concatenate([begun, begun + period]), np.tile(samples.values[0], 2)
-    first, last = (
-        np.searchsorted(angles, 0.0, side="right"),
-        np.searchsorted(angles, period, side="left"),
-    )
-    between = np.interp(0.0, angles, torques)
-    at_zero = torques[first - 1] if angles[first - 1] == 0 else between
-    at_end = torques[last] if angles[last] == period else between
-    inside = slice(first, last)
-    return np.concatenate([[0.0], angles[inside], [period]]), np.concatenate(
-        [[at_zero], torques[inside], [at_end]]
-    )
 
 
 class Coupling(Record):

@@ -25,8 +25,8 @@ from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import located, parse
 from kurbel.machine_file.overrides import named, set_over
-from kurbel.quantities import every_quantity
-from kurbel.quantity import Quantity, by_id
+from kurbel.quantities import KEY_VALUES
+from kurbel.quantity import Quantity
 
 ROOT = RecordForm(Machine)
 """The form of a whole machine file."""
@@ -90,7 +90,7 @@ def machine_of(given: object) -> Machine:
 
 def key_values() -> Mapping[str, Quantity]:
     """Return the key values on which a machine file may put limits, by id."""
-    return by_id(*every_quantity().all_key_values)
+    return KEY_VALUES
 
 
 def reading_of(origin: Origin) -> Reading:

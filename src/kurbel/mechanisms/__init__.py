@@ -185,6 +185,8 @@ class Mechanism(Record, ABC):
     name: ClassVar[str]
     OFFERS: ClassVar[tuple[Offer, ...]] = ()
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = ()
+    rubs: ClassVar[bool] = False
+    """Whether a block on the crank pin and two guides may rub, as those of a Scotch yoke."""
     guided: ClassVar[bool] = True
     """Whether the side force N rests on a guide; otherwise it bends the piston rod."""
     has_rod: ClassVar[bool] = False
@@ -218,6 +220,20 @@ class Mechanism(Record, ABC):
     def offset(self) -> float:
         """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
         return 0.0
+
+    @property
+    def rubbing_pin(self) -> float | None:
+        """Diameter in m of the crank pin that rubs in a block; None where there is none, or it is not given."""
+        return None
+
+    @property
+    def guide_distance(self) -> float | None:
+        """Distance in m of the two guides that keep a yoke from tilting; None where there are none, or not given."""
+        return None
+
+    def guide_pair_factor(self, angle: CrankAngle) -> Number | None:
+        """Return the force on each of two such guides over P, of the shape of the angle; None without them."""
+        return None
 
     @abstractmethod
     def coordinate(self, angle: CrankAngle) -> Number:

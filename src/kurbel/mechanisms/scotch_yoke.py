@@ -49,6 +49,7 @@ class ScotchYoke(Mechanism):
     pin_length: float | None = pin_length()
 
     name = "scotch-yoke"
+    rubs = True
     known_across = True
     OFFERS = (*BLOCK_OFFERS, _N_PAIR)
     # R p. 615: up to 200 kgf/cm²
@@ -90,6 +91,16 @@ class ScotchYoke(Mechanism):
     def radial(self, angle: CrankAngle) -> Number:
         """Return D/P = cos φ, R 302 with ψ = 0."""
         return angle.cos
+
+    @property
+    def rubbing_pin(self) -> float | None:
+        """The diameter of the crank pin, in its block."""
+        return self.pin_diameter
+
+    @property
+    def guide_distance(self) -> float | None:
+        """The distance of the guides."""
+        return self.guide_length
 
     def guide_pair_factor(self, angle: CrankAngle) -> Number | None:
         """Return R sin φ/l_g: the couple of P on piston and pin, over the distance of the guides; None without it."""

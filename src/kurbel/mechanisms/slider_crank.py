@@ -128,6 +128,7 @@ class SliderCrank(Mechanism):
         words=_INFINITE,
         instead="rod",
         example="5",
+        usual="5 in horizontal machines, down to 4.5 and 4 in vertical ones (R p. 603)",
         gives=lambda given: {"rod": given["crank"] * given["rod_ratio"]},
         key="rod_ratio",
     )

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from kurbel.arrays import Number
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.turning import Swing
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.tables.tables import LeftOut
@@ -125,8 +124,8 @@ def turning_stages(machine: Machine) -> dict[str, str]:
     wanted = machine.flywheel is not None and machine.flywheel.fluctuation is not None
     varies = machine.load is not None and machine.load.diagram is None
     effort = machine.effort
-    alone = "its swing of energy alone is given" if isinstance(effort, Swing) else ""
-    no_mean = "no mean torque given" if isinstance(effort, Swing) and effort.mean is None else ""
+    alone = "its swing of energy alone is given" if effort and effort.alone else ""
+    no_mean = "no mean torque given" if effort and effort.alone and effort.mean is None else ""
     return {
         **(
             {"ΔE": "", "turning effort and speed over the angle": alone}

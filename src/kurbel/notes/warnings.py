@@ -16,14 +16,11 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.machine.indicator import Card, CardLine
-from kurbel.machine.turning import Effort
+from kurbel.notes.plausible import cylinder_doubts, machine_doubts
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.tables.tables import grouped, together
-from kurbel.traces.checks import doubt
-from kurbel.traces.pressure import TracePressure
 
 
 class Note(NamedTuple):
@@ -37,8 +34,11 @@ class Note(NamedTuple):
     command: str = ""
 
 
-def machine_notes(case: Case) -> tuple[Note, ...]:
-    """Return all warnings on a machine, each once: on what was given, on measurements, and on results."""
+def machine_notes(case: Case, of_forces: bool = False) -> tuple[Note, ...]:
+    """Return all warnings on a machine, each once: on what was given, on measurements, and on results.
+
+    of_forces: leave out those on the speed line and on strength, which take far longer to compute than forces.
+    """
     machine, found = case.machine, list[Note]()
 
     def add(texts: Iterable[str], cylinder: str | None = None, command: str = "") -> None:
@@ -46,12 +46,12 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
 
     for cylinder in machine.cylinders:
         add(_card_warnings(cylinder), cylinder.name)
-    if isinstance(machine.effort, Effort):
+    if machine.effort:
         add(f"effort: {text}" for text in machine.effort.notes)
-    add(_speed_warnings(machine))
+    add(machine_doubts(machine))
     add(_fluctuation_warnings(machine), command="flywheel")
     for cylinder in machine.cylinders:
-        add(_size_warnings(cylinder), cylinder.name)
+        add(cylinder_doubts(machine, cylinder), cylinder.name)
     add(pin_warnings(machine))
     if machine.effort or any(
         one.pistons or one.masses or one.ram_force or one.moment for one in machine.cylinders
@@ -62,8 +62,9 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
             add(_brake_warnings(case))
             for forces in case.cylinders:
                 add(as_far_as_solved(cylinder_warnings(forces), "forces"), forces.drive.name)
-            add(as_far_as_solved(_turning_warnings(case), "flywheel"), command="flywheel")
-            add(as_far_as_solved(_strength_warnings(case), "stress"), command="stress")
+            if not of_forces:
+                add(as_far_as_solved(_turning_warnings(case), "flywheel"), command="flywheel")
+                add(as_far_as_solved(_strength_warnings(case), "stress"), command="stress")
     return tuple(dict.fromkeys(found))
 
 
@@ -81,7 +82,7 @@ def by_cylinder(case: Case) -> dict[str, list[str]]:
     """Return the warnings on the forces of each cylinder by its name; those on all of them are with the last one."""
     found: dict[str, list[str]] = {cylinder.name: [] for cylinder in case.machine.cylinders}
     last = case.machine.cylinders[-1].name
-    for note in machine_notes(case):
+    for note in machine_notes(case, of_forces=True):
         if note.command in ("", "forces"):
             found[note.cylinder or last].append(note.text)
     return found
@@ -97,19 +98,7 @@ def of_machine(case: Case) -> Iterator[str]:
 
 # what was given: sizes and speeds
 
-_LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1849, has 3.66 m
-_LARGEST_MASS = (
-    1e5  # kg reciprocating in one cylinder; those of the largest marine diesels weigh some 2e4
-)
-_HIGHEST_SPEED = 1000.0  # 1/s; model racing engines stay below 700
-_ASK = "is beyond anything built; is its unit right?"
 _LARGEST_FLUCTUATION = 0.25  # the largest that the books permit is 1/5, for crushers and hammers
-
-
-def _speed_warnings(machine: Machine) -> Iterator[str]:
-    """Yield a warning on a speed that no crank has reached."""
-    if machine.speed is not None and machine.speed > _HIGHEST_SPEED:
-        yield f"a speed of {show(machine.speed, 'speed')} {_ASK}"
 
 
 def _fluctuation_warnings(machine: Machine) -> Iterator[str]:
@@ -120,17 +109,6 @@ def _fluctuation_warnings(machine: Machine) -> Iterator[str]:
             f"a wanted fluctuation of {wanted:g} lets the speed vary between {1 - wanted / 2:g} and {1 + wanted / 2:g} "
             "times its mean; those of the books are 1/5 to 1/300: is it right?"
         )
-
-
-def _size_warnings(cylinder: Cylinder) -> Iterator[str]:
-    """Yield warnings on a bore and on moving masses beyond those of any machine built."""
-    for piston in cylinder.pistons:
-        if piston.bore > _LARGEST_BORE:
-            yield f"{piston.name}: a bore of {show(piston.bore, 'length')} {_ASK}"
-    rod = cylinder.masses.connecting_rod if cylinder.masses else None
-    moving = (cylinder.masses.parts if cylinder.masses else 0.0) + (rod.mass if rod else 0.0)
-    if moving > _LARGEST_MASS:
-        yield f"a mass of {show(moving, 'mass')} in moving parts {_ASK}"
 
 
 _SAME_PLACE = 1e-9  # m
@@ -170,19 +148,9 @@ def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
             place = f"{piston.name}, {end.replace('_', ' ')}"
-            yield from (
-                f"{place}: {text}"
-                for text in (() if isinstance(chamber, Compressor) else chamber.notes)
-            )
-            exponents = (
-                {chamber.exponent}
-                if isinstance(chamber, (Steam, Compressor, Otto, Diesel))
-                else set()
-            )
-            if isinstance(chamber, (Compressor, Otto, Diesel)) and chamber.expansion_exponent:
-                exponents.add(chamber.expansion_exponent)
+            yield from (f"{place}: {text}" for text in chamber.notes)
             least, most = _EXPONENTS
-            for value in exponents:
+            for value in set(chamber.exponents):
                 if not least <= value <= most:
                     yield f"{place}: an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
         asymmetries = [
@@ -218,6 +186,8 @@ _LEAST_OF_SEVERAL = 1.1
 """Brake over indicated power of one cylinder from which others are probably missing."""
 _TAKEN = 0.3, 1.0
 """Indicated over brake power of a machine that is driven."""
+_LEAST_EFFICIENCY = 0.05
+"""Brake over indicated power below which a size or a unit is wrong, rather than the engine idle."""
 _GOOD = 0.85
 """Mechanical efficiency assumed for the number of cylinders that the brake power needs."""
 
@@ -226,7 +196,9 @@ def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
     """Yield the one warning on each trace of a cylinder, if any."""
     for gas in forces.drive.gas:
         for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
-            if isinstance(pressure, TracePressure):
+            if pressure and pressure.traced:
+                from kurbel.traces.checks import doubt
+
                 text = doubt(pressure.trace, pressure.setting, pressure.each)
                 if text:
                     yield f"{gas.piston.name}, {end}: {text}"
@@ -250,6 +222,11 @@ def _brake_warnings(case: Case) -> Iterator[str]:
                 "each: …}' with a firing order"
             )
         yield f"{shown} below the brake power, {taken}: check angle_zero, units and areas{several}"
+    if indicated > 0 and brake / indicated < _LEAST_EFFICIENCY:
+        yield (
+            f"the brake power, {taken}, is {100 * brake / indicated:.2g} % of the indicated power, "
+            f"{show(indicated, 'power')}: check bore, units and areas"
+        )
 
 
 # results of a cylinder
@@ -373,9 +350,7 @@ def _kind_of(forces: CylinderForces) -> str:
         for one in pistons
         for _ in one.chambers
     ]
-    if any(
-        isinstance(one, Steam) or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)
-    ):
+    if any(one.by_steam or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)):
         return "steam engines"
     if (forces.work or 0.0) < 0:
         return (
@@ -384,9 +359,7 @@ def _kind_of(forces: CylinderForces) -> str:
             else ""
         )
     crosshead = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
-    burns = any(
-        isinstance(chamber, (Otto, Diesel)) or forces.drive.cycle > 360 for chamber in chambers
-    )
+    burns = any(chamber.burns or forces.drive.cycle > 360 for chamber in chambers)
     return "gas engines with a crosshead" if crosshead and burns else ""
 
 

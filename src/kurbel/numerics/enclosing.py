@@ -105,13 +105,20 @@ class ClosedCurve:
         self, degrees: Array, machine: Indices | int = 0
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """Return the points at angles (…) in degrees, and their first and second derivatives by φ in radians."""
-        numbers = self.numbers.reshape(-1, *(1 for _ in degrees.shape))
-        waves = self.waves[:, np.broadcast_to(machine, degrees.shape)] * np.exp(
+        present, own = self._present
+        numbers = own.reshape(-1, *(1 for _ in degrees.shape))
+        waves = present[:, np.broadcast_to(machine, degrees.shape)] * np.exp(
             1j * np.radians(numbers * degrees)
         )
-        weights = np.stack((np.ones(len(waves)), 1j * self.numbers, -(self.numbers**2)))
+        weights = np.stack((np.ones(len(waves)), 1j * own, -(own**2)))
         point, slope, bend = np.tensordot(weights, waves, 1)
         return point, slope, bend
+
+    @cached_property
+    def _present(self) -> tuple[ComplexArray, Indices]:
+        """The amplitudes and numbers of the waves that any machine has."""
+        rows = np.flatnonzero(self.waves.any(axis=1))
+        return self.waves[rows], self.numbers[rows]
 
     @cached_property
     def samples(self) -> ComplexArray:

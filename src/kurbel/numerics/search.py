@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,10 @@ _LEAVES = 1e-3
 """Share of the spread of the samples: a sample farther from the cubic through its neighbours needs more around it."""
 _ROUNDING = 1e-12
 """Share of the largest value: smaller differences of samples are rounding errors."""
+_LEVEL = 1e-3
+"""Width of an interval over which a function that is zero counts as level."""
+_HALVES = 30
+"""Times that the interval in which it ends to be level is halved."""
 _NARROWEST = 2.0**-20
 """Width of the narrowest interval that is halved."""
 _SAME = 1e-8
@@ -42,29 +47,85 @@ _EQUAL = 1e-14
 RealFunction = Callable[[Array], Array]
 
 
-def roots(function: RealFunction) -> tuple[Array, Flags]:
-    """Return all places (n,) in the interval where a function changes sign, in order, and whether it jumps there.
+class Roots(NamedTuple):
+    """Roots in order: places (n,); whether the function jumps there; until where it stays zero, nan for one place."""
 
-    Roots closer together than 1/64 may be missed where the function looks smooth between the samples.
+    places: Array
+    jumps: Flags
+    until: Array
+
+
+def roots(function: RealFunction, size: float = 0.0) -> Roots:
+    """Return all places in the interval where a function changes sign, is zero, or ends at zero but for rounding.
+
+    size: of the terms of which the function is the difference. Roots closer together than 1/64 may be missed where the
+    function looks smooth between the samples.
     """
     x, y = _sampled(function)
     spread = np.nanmax(np.abs(y), initial=0.0)
-    at_samples = x[y == 0]
-    passed = np.flatnonzero(y[:-1] * y[1:] < 0)
-    if not len(passed):
-        return at_samples, np.zeros(len(at_samples), dtype=bool)
-    found = _closed(
-        lambda places: np.nan_to_num(function(places[:, None])),
-        x[passed],
-        x[passed + 1],
-        y[passed],
-        y[passed + 1],
-    )
-    left = function(found[:, None])
+    y = _zero_at_ends(y, _ROUNDING * size)
+
+    # where it is zero at samples: a stretch counts as one root
+    is_zero = np.abs(y) <= _ROUNDING * size
+    starts, stops = _runs(is_zero)
+    is_level = x[stops] - x[starts] > _LEVEL
+    inside = np.zeros(len(x), dtype=bool)
+    for start, stop in zip(starts[is_level], stops[is_level]):
+        inside[start : stop + 1] = True
+    alone = x[(y == 0) & ~inside]
+
+    # where it changes sign between two samples
+    passed = np.flatnonzero((y[:-1] * y[1:] < 0) & ~inside[:-1] & ~inside[1:])
+    found: Array = np.empty(0)
+    if len(passed):
+        found = _closed(
+            lambda places: np.nan_to_num(function(places[:, None])),
+            x[passed],
+            x[passed + 1],
+            y[passed],
+            y[passed + 1],
+        )
+    left = function(found[:, None]) if len(found) else found
     there = np.isfinite(left)
-    every, jumps = np.append(at_samples, found[there]), np.abs(left[there]) > _LEFT * spread
-    order = np.argsort(every)
-    return every[order], np.append(np.zeros(len(at_samples), dtype=bool), jumps)[order]
+    found, left = found[there], left[there]
+
+    # all of them in order
+    begins, ends = starts[is_level], stops[is_level]
+    levels = _edges(function, x[begins], x[np.maximum(begins - 1, 0)], _ROUNDING * size)
+    last = _edges(function, x[ends], x[np.minimum(ends + 1, len(x) - 1)], _ROUNDING * size)
+    places = np.concatenate((levels, alone, found))
+    order = np.argsort(places, kind="stable")
+    single = np.full(len(alone) + len(found), np.nan)
+    until = np.concatenate((last, single))
+    jumps = np.concatenate(
+        (np.zeros(len(levels) + len(alone), dtype=bool), np.abs(left) > _LEFT * spread)
+    )
+    return Roots(places[order], jumps[order], until[order])
+
+
+def _zero_at_ends(y: Array, rounding: float) -> Array:
+    """Return samples that are exactly zero at either end where only rounding is left there and no root is beside it."""
+    y = y.copy()
+    for end, beside in ((0, 1), (-1, -2)):
+        is_rounding = abs(y[end]) <= rounding
+        if is_rounding and not y[end] * y[beside] < 0:
+            y[end] = 0.0
+    return y
+
+
+def _edges(function: RealFunction, zero: Array, beyond: Array, rounding: float) -> Array:
+    """Return how far from places (n,) toward others a function stays zero, by halves."""
+    for _ in range(_HALVES if len(zero) else 0):
+        middle = (zero + beyond) / 2
+        is_zero = np.abs(function(middle[:, None])) <= rounding
+        zero, beyond = np.where(is_zero, middle, zero), np.where(is_zero, beyond, middle)
+    return zero
+
+
+def _runs(flags: Flags) -> tuple[Indices, Indices]:
+    """Return the first and the last index of every run of true flags."""
+    padded = np.concatenate(([False], flags, [False]))
+    return np.flatnonzero(padded[1:] & ~padded[:-1]), np.flatnonzero(padded[:-1] & ~padded[1:]) - 1
 
 
 def _closed(function: RealFunction, low: Array, high: Array, f_low: Array, f_high: Array) -> Array:

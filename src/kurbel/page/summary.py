@@ -12,16 +12,16 @@ import numpy as np
 from kurbel.checks.limits import compared_entries, name_of
 from kurbel.declared.unit_systems import convert, show, shown_unit
 from kurbel.errors import KurbelError
-from kurbel.machine import Machine, firings
-from kurbel.machine.ideal_cards import Steam
+from kurbel.machine import Machine
+from kurbel.machine.firing import firings
 from kurbel.machine.several import intervals
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.pictures.picture import Fact, Facts, FactValue, Grid, Notice, SectionItem
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
-from kurbel.tables.frame import PlaceRow, Places, Subject
-from kurbel.tables.tables import grouped, together
+from kurbel.tables.frame import PlaceRow, Places, Subject, before_jumps
+from kurbel.tables.tables import BEFORE, grouped, together
 
 Thing = TypeVar("Thing")
 _LABELS = {
@@ -50,6 +50,17 @@ _LABELS = {
         "rod_compression_max": "Rod load, compression",
         "rod_tension_max": "Rod load, tension",
         "reversal_angle": "Reversal of the rod load",
+        "power": "Indicated power",
+        "P_max": "Piston force, largest",
+        "P_min": "Piston force, smallest",
+        "N_max": "Guide force, largest",
+        "N_min": "Guide force, smallest",
+        "T_max": "Tangential force, largest",
+        "T_min": "Tangential force, smallest",
+        "friction_work": "Friction work per cycle",
+        "friction_power": "Friction power",
+        "friction_loss": "Friction loss",
+        "friction_force_mean": "Mean crosshead friction",
     },
     "bearings": {"load_max": "Largest bearing load"},
     "stress": {"safety_pin_min": "Safety of the crank pin"},
@@ -94,6 +105,11 @@ _KINDS = {
     "masses": "P_peak M_max load_max F_free_max M_free_max c_m c_max b_max",
 }
 """Kind of machine -> its most informative key values, in order; then follow those of `_USUAL`."""
+_OF_FORCES = (
+    "b_max c_max friction_work friction_power friction_loss friction_force_mean power mean_pressure "
+    "P_max P_min N_max N_min T_max T_min"
+)
+"""What the first selection of `kurbel forces` has; after the most informative key values on the first page."""
 _SMALLEST = ("safety_pin_min", "reversal_angle", "transmission_min")
 """Key values of which the smallest of all parts is shown, else the largest."""
 _MOST_FACTS = 8
@@ -122,7 +138,7 @@ def machine_kind(case: Case) -> str:
     if firings(machine):
         return "engine"
     drives = any(cylinder.drive.drives for cylinder in case.cylinders)
-    if drives or any(isinstance(one, Steam) for one in chambers):
+    if drives or any(chamber.by_steam for chamber in chambers):
         return "steam engine"
     try:
         return "pump" if case.delivery.pump else "compressor"
@@ -195,7 +211,10 @@ def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Fact | None:
             value = subject.answer(quantity) if quantity and subject.is_printed(quantity) else None
             if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
                 degrees = value.degrees if isinstance(value, Extreme) else None
-                each.append(Fact(_LABELS[command][id], number, quantity, subject.name, degrees))
+                side = BEFORE if before_jumps(subject, [(quantity, value)]) else ""
+                each.append(
+                    Fact(_LABELS[command][id], number, quantity, subject.name, degrees, side=side)
+                )
     if not each:
         return None
     whole = [one for one in each if one.where == "whole machine"]
@@ -230,7 +249,7 @@ def first_page(
 ) -> Iterator[SectionItem]:
     """Yield the most informative key values, limits and expectations with their verdicts, load cases, and warnings."""
     facts = facts_of(case)
-    yield tiles(facts.values(), system)
+    yield tiles([*facts.values(), *_facts_of_forces(case, facts.values())], system)
     yield from limit_verdicts(case, cases)
     if cases:
         rows: list[PlaceRow] = []
@@ -243,6 +262,15 @@ def first_page(
     yield from (Notice(text, "warning") for text in warnings)
     if not warnings:
         yield Notice("No warnings.", "good")
+
+
+def _facts_of_forces(case: Case, facts: Iterable[Fact]) -> Iterator[Fact]:
+    """Yield the key values of the first selection of `kurbel forces`, but for those equal to a fact, and zeros."""
+    sizes = {0.0, *(abs(fact.value) for fact in facts)}
+    for fact in facts_of(case, _OF_FORCES.split()).values():
+        if abs(fact.value) not in sizes:
+            sizes.add(abs(fact.value))
+            yield fact
 
 
 def limit_verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[SectionItem]:

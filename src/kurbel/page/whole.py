@@ -43,7 +43,7 @@ from kurbel.report.keys import every_place, meaning
 from kurbel.solver.case import Case
 from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
 from kurbel.tables.frame import Frame, Subject, provenance
-from kurbel.tables.tables import Report, grouped, shown_once, stepped, together
+from kurbel.tables.tables import Report, for_people, grouped, stepped, together
 
 KeyTexts = Sequence[tuple[str, str]]
 """The keys of a machine file with their values, as they were read."""
@@ -95,7 +95,7 @@ def whole_report(
         items = list[SectionItem](firing_order(machine) if command.word == "flywheel" else ())
         try:
             angles = stepped(step, command.functions.end(case), max(len(case.cylinders), 1))
-            report = shown_once(
+            report = for_people(
                 command.functions.report(case, Frame(command.word, angles, None, system))
             )
         except NoSolutionError as error:

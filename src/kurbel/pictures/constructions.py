@@ -92,19 +92,47 @@ def _at(degrees: float) -> str:
 
 
 def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
-    """Return x as AG, cut off on the stroke line by an arc about the crosshead, and as CE up to the arc through A."""
+    """Return x as AG, cut off on the stroke line by an arc about the crosshead, and as CE up to the arc through A.
+
+    F: foot of the vertical from C. D is the pin half a turn later, at the same angle on the return stroke: its way
+    back from B, x_D, is the shorter one.
+    """
     pin, head, sin, cos = _straight(mechanism, angle)
     length, way, psi = mechanism.rod, float(mechanism.coordinate(angle)), math.atan2(sin, cos)
     arc = length * np.exp(1j * np.linspace(math.pi - psi, math.pi, 25))
     dead = head + way  # the crosshead at its inner dead centre
     start, above = complex(-mechanism.crank, mechanism.offset), dead + complex(arc[0])
+
+    # the opposite pin and its crosshead; B is the pin at the outer dead centre, laid off along the stroke line
+    later = CrankAngle.of(np.asarray(float(angle.degrees) + 180.0))
+    opposite, head_of_opposite, _, _ = _straight(mechanism, later)
+    outer = dead - mechanism.stroke - length
+    way_back = float(mechanism.stroke - mechanism.coordinate(later))
+    foot = complex(pin.real, mechanism.offset)
+    places = {
+        "A": dead - length,
+        "B": outer,
+        "C": pin,
+        "D": opposite,
+        "E": above,
+        "F": foot,
+        "G, x": head - length,
+        "x_D": head_of_opposite - length,
+    }
     return _panel(
         "length",
-        {"A": dead - length, "C": pin, "E": above, "x": head - length},
-        {"x": way},
-        faint=(mechanism.crank * AROUND, (start, dead), head + arc, dead + arc),
+        places,
+        {"G, x": way, "x_D": way_back},
+        faint=(
+            mechanism.crank * AROUND,
+            (start, dead),
+            head + arc,
+            dead + arc,
+            (pin, foot),
+            (opposite, head_of_opposite),
+        ),
         member=[(0j, pin, head)],
-        line=[(dead - length, head - length), (pin, above)],
+        line=[(dead - length, head - length), (outer, head_of_opposite - length), (pin, above)],
         joint=[(0j, pin, head)],
     )
 
@@ -144,8 +172,8 @@ def _on_the_vertical(
     over, end = complex(v - omega * float(mechanism.coordinate(angle)), cut.imag), complex(1.1 * v)
     panel = _panel(
         "velocity",
-        {"B": pin, "G": foot, "c": cut},
-        {"c": cut.imag},
+        {"M": 0j, "B": pin, "G": foot, "F, c": cut},
+        {"F, c": cut.imag},
         faint=[
             (-end, end),
             (-1j * end, 1j * end),
@@ -164,11 +192,15 @@ def _on_the_vertical(
 
 
 def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega: float) -> Panel:
-    """Return c as GH, G under the lever's end and FH parallel to CG, and the curve of c over the place of the ram."""
-    pivot, pin = (
-        complex(-mechanism.frame * omega),
-        mechanism.crank * omega * complex(angle.cos, angle.sin),
-    )
+    """Return c as GH, G under the lever's end and FH parallel to CG, and the curve of c over the place of the ram.
+
+    c_1, c_2: largest velocities out and back. Of a lever that swings its end moves on the arc AB, while the crank
+    turns through 2 α on the working stroke and 2 β on the return stroke, between the perpendiculars from M on the
+    extreme positions.
+    """
+    pivot = complex(-mechanism.frame * omega)
+    v = mechanism.crank * omega
+    pin = v * complex(angle.cos, angle.sin)
     along = (pin - pivot) / abs(pin - pivot)
     length = omega * (mechanism.lever or 0.0)
     end = pivot + length * along
@@ -177,12 +209,41 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
     cut = pivot + (under - pivot) * ((foot - pivot) / (pin - pivot)).real
     x, c = source.samples("c", [source.line("x"), source.line("c")]).values
     line = pivot + length  # of the ram
-    ram, circle = complex(line.real, end.imag), mechanism.crank * omega * AROUND
+    ram = complex(line.real, end.imag)
+    circle = v * AROUND
     tip = ram + under - cut
+
+    # the largest velocities, with the pin in the line of both pivots (R 304, 305)
+    out, back = source.results.at([0.0]), source.results.at([180.0])
+    c_1, c_2 = float(out.c[0]), float(back.c[0])
+    places = {"M": 0j, "C": pin, "D": pivot, "E": end, "F": foot, "G": under, "H": cut, "c": tip}
+    places["c_1"] = complex(line.real + c_1, omega * float(out.x[0]))
+    places["c_2"] = complex(line.real + c_2, omega * float(back.x[0]))
+
+    # the extreme positions of a lever that swings
+    extremes: list[Sequence[complex] | ComplexArray] = []
+    angles: list[Curve] = []
+    if mechanism.crank < mechanism.frame:
+        tilt = math.asin(mechanism.crank / mechanism.frame)
+        last = complex(math.cos(tilt), math.sin(tilt))
+        foot_of_last = pivot - pivot.real * last.real * last
+        swing = np.linspace(-tilt, tilt, 37)
+        places["A"] = pivot + length * last.conjugate()
+        places["B"] = pivot + length * last
+        alpha = math.pi / 2 + tilt
+        to_label = 0.4 * v * np.exp(1j * np.linspace(alpha, -math.pi / 4, 49))
+        from_label = 0.4 * v * np.exp(1j * np.linspace(-math.pi / 4, -alpha, 25))
+        returning = 0.6 * v * np.exp(1j * np.linspace(alpha, 2 * math.pi - alpha, 49))
+        angles.append(curve("faint", *from_label))
+        angles.append(curve("faint", *to_label, name=Words("2 α", "2 alpha")))
+        angles.append(curve("faint", *returning, name=Words("2 β", "2 beta")))
+        extremes.append((places["A"], pivot, places["B"]))
+        extremes.append((foot_of_last.conjugate(), 0j, foot_of_last))
+        extremes.append(pivot + length * np.exp(1j * swing))
     panel = _panel(
         "velocity",
-        {"C": pin, "D": pivot, "E": end, "F": foot, "G": under, "H": cut, "c": tip},
-        {"c": (under - cut).real},
+        places,
+        {"c": (under - cut).real, "c_1": c_1, "c_2": c_2},
         guide=[(line + 1j * omega * x.min(), line + 1j * omega * x.max())],
         faint=(
             circle,
@@ -191,6 +252,7 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
             (end, under, pin),
             (0j, foot, cut),
             (end, ram),
+            *extremes,
         ),
         member=[(0j, pin), (pivot, end)],
         line=[(under, cut)],
@@ -198,7 +260,7 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
         joint=[(0j, pin, end, pivot)],
     )
     return panel._replace(
-        curves=(Curve(Words("c"), line.real + c, omega * x, look=0), *panel.curves)
+        curves=(Curve(Words("c"), line.real + c, omega * x, look=0), *panel.curves, *angles)
     )
 
 

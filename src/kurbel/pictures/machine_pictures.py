@@ -42,27 +42,22 @@ def effort(source: Source) -> Iterator[Panel]:
     results = source.results
     if not source.having("M"):
         return
-    id, radius = ("T", results.crank) if source.having("T") else ("M", 1.0)
-    level_load = results.machine.load is None or results.machine.load.diagram is None
-    name = Words("W" if id == "T" else "M_m" if level_load else "M_W", words="resistance")
-    load: CurveFormula = name, lambda state: state["M_load"] / radius
-    panel = source.panel([id, load], shaded=True, faint=level_load, also=results.phi_crossing)
-    shades, lobes = list(panel.shades), results.lobes
-    if 0 < len(lobes) <= _MOST_NUMBERED:
-        owners = [
-            np.searchsorted(results.phi_crossing, (shade.x[0] + shade.x[-1]) / 2) - 1
-            for shade in shades
-        ]
-        for lobe, work in enumerate(lobes):
-            own = [place for place, owner in enumerate(owners) if owner % len(lobes) == lobe]
-            # of a lobe that the end of the cycle cuts, the wider part has its number and work
-            widest = max(own, key=lambda place: float(np.ptp(shades[place].x)), default=None)
-            if widest is not None:
-                shades[widest] = shades[widest]._replace(
-                    figure=PageFigure(Words(f"A_{lobe + 1}"), work, kind="energy")
-                )
-    yield panel._replace(shades=tuple(shades))
 
+    # turning effort and resistance, as forces on the crank where there is one
+    has_crank = bool(source.having("T"))
+    id = "T" if has_crank else "M"
+    radius = results.crank if has_crank else 1.0
+    is_level = results.machine.load is None or results.machine.load.diagram is None
+    if has_crank:
+        load_symbol = "W"
+    else:
+        load_symbol = "M_m" if is_level else "M_W"
+    name = Words(load_symbol, words="resistance")
+    load: CurveFormula = name, lambda state: state["M_load"] / radius
+    panel = source.panel([id, load], shaded=True, faint=is_level, also=results.phi_crossing)
+    yield panel._replace(shades=_numbered(panel.shades, results.lobes, results.phi_crossing))
+
+    # excess work, speed, and torque in the coupling
     yield from source.panels(["E"])
     if source.having("omega"):
         mean_speed: CurveFormula = source.words("omega_mean"), lambda state: results.omega_mean
@@ -70,6 +65,28 @@ def effort(source: Source) -> Iterator[Panel]:
     if source.having("M_coupling"):
         mean_torque: CurveFormula = source.words("M_mean"), lambda state: results.M_mean
         yield source.panel(["M_coupling", mean_torque], faint=True)
+
+
+def _numbered(
+    shades: Sequence[Shade], lobes: Sequence[float], crossings: Array
+) -> tuple[Shade, ...]:
+    """Return the areas between effort and resistance with number and work of their lobes, unless these are many."""
+    numbered = list(shades)
+    if not 0 < len(lobes) <= _MOST_NUMBERED:
+        return tuple(numbered)
+    lobe_of_shade = []
+    for shade in shades:
+        middle = (shade.x[0] + shade.x[-1]) / 2
+        lobe_of_shade.append(int(np.searchsorted(crossings, middle) - 1) % len(lobes))
+    for lobe, work in enumerate(lobes):
+        of_lobe = [index for index, owner in enumerate(lobe_of_shade) if owner == lobe]
+        if not of_lobe:
+            continue
+        # of a lobe that the end of the cycle cuts, the wider part has its number and work
+        widest = max(of_lobe, key=lambda index: float(np.ptp(shades[index].x)))
+        figure = PageFigure(Words(f"A_{lobe + 1}"), work, kind="energy")
+        numbered[widest] = numbered[widest]._replace(figure=figure)
+    return tuple(numbered)
 
 
 def flow(source: Source) -> Iterator[Panel]:
@@ -85,20 +102,22 @@ def crank_efforts(source: Source) -> Iterator[Panel]:
     """Tangential force of each cylinder as its crank stands, their sum, and dashed the sum with the efficiency (R Abb.
     1062, 1064)."""
     effort = source.results.effort
-    acting = [cylinder for cylinder in effort.cylinders if cylinder.drive.has_force]
-    lossy = bool(effort.machine.efficiency != 1)
-    if (
-        effort.given is not None
-        or not source.having("T")
-        or len(acting) > _MOST_CRANKS
-        or len(acting) + lossy < 2
-    ):
+    if effort.given is not None or not source.having("T"):
         return
-    whole = effort.sampled([Term(1.0, group) for group in effort.groups])
-    lines = [_on_crank_1(source, source.words("T"), whole)]
-    lines += [_on_crank_1(source, Words("T with η", "T with eta"), effort.M)] if lossy else []
-    for one in acting if len(acting) > 1 else ():
-        lines.append(_on_crank_1(source, Words(one.drive.name), effort.sampled([Term(1.0, [one])])))
+    acting = [cylinder for cylinder in effort.cylinders if cylinder.drive.has_force]
+    has_losses = bool(effort.machine.efficiency != 1)
+    curves = len(acting) + (1 if has_losses else 0)
+    if len(acting) > _MOST_CRANKS or curves < 2:
+        return
+
+    all_cranks = effort.sampled([Term(1.0, group) for group in effort.groups])
+    lines = [_on_crank_1(source, source.words("T"), all_cranks)]
+    if has_losses:
+        lines.append(_on_crank_1(source, Words("T with η", "T with eta"), effort.M))
+    if len(acting) > 1:
+        for cylinder in acting:
+            torque = effort.sampled([Term(1.0, [cylinder])])
+            lines.append(_on_crank_1(source, Words(cylinder.drive.name), torque))
     lines.append((Words("W"), lambda state: effort.mean[0] / source.results.crank))
     yield source.panel(lines, like="T", faint=True)._replace(marks=source.marks("T"))
 
@@ -108,25 +127,33 @@ def effort_of_sides(source: Source) -> Iterator[Panel]:
     (R Abb. 1067)."""
     effort = source.results.effort
     driven = [group for group in effort.groups if group[0].drive.driven]
-    if effort.given is not None or not source.having("T") or not driven or not effort.drives:
+    has_both_sides = bool(driven) and effort.drives
+    if effort.given is not None or not source.having("T") or not has_both_sides:
         return
-    resistance = -effort.sampled(
-        [Term(1.0, group, lambda one: driven_force(one) * one.slope) for group in driven]
-    )
-    driving = Words("T_driving", words="driving pistons"), effort.M + resistance
-    against = Words("−T_driven", words="driven pistons"), resistance
-    lines = [_on_crank_1(source, *one) for one in (driving, against)]
+    terms = [Term(1.0, group, _driven_torque) for group in driven]
+    resistance = -effort.sampled(terms)
+    driving_name = Words("T_driving", words="driving pistons")
+    driven_name = Words("−T_driven", words="driven pistons")
+    lines = [
+        _on_crank_1(source, driving_name, effort.M + resistance),
+        _on_crank_1(source, driven_name, resistance),
+    ]
     yield source.panel(lines, like="T", shaded=True, zero=True)
+
+
+def _driven_torque(state: State) -> Number:
+    return driven_force(state) * state.slope
 
 
 def driven_force(state: State) -> Number:
     """Return the force in N of the pistons of a rod that do not drive, and of what a ram works against."""
-    gas = (
-        0.0
-        if state.P_gas is None
-        else state.P_gas - (0.0 if state.P_driving is None else state.P_driving)
-    )
-    return gas if state.P_ram is None else gas + state.P_ram
+    force: Number = 0.0
+    if state.P_gas is not None:
+        P_driving = 0.0 if state.P_driving is None else state.P_driving
+        force = state.P_gas - P_driving
+    if state.P_ram is not None:
+        force = force + state.P_ram
+    return force
 
 
 def _on_crank_1(source: Source, name: Words, torque: Array) -> CurveFormula:
@@ -141,129 +168,132 @@ def _on_crank_1(source: Source, name: Words, torque: Array) -> CurveFormula:
 
 def throw_stress(source: Source) -> Iterator[Panel]:
     """Largest combined stress of each part of the crank throw over the cycle."""
-    called = {f"sigma_{part}": words.removeprefix("the ") for part, (_, words) in PARTS.items()}
-    return source.panels([*called], words=called)
+    names = {}
+    for part, (_, words) in PARTS.items():
+        names[f"sigma_{part}"] = words.removeprefix("the ")
+    return source.panels([*names], words=names)
 
 
 def torque_orders(source: Source) -> Iterator[Panel]:
     """Amplitudes of the turning effort by order, periods per turn of the shaft."""
-    found, drawn = source.results.machine, source.results.orders <= _HIGHEST
-    spectra = [
-        np.abs(one)[drawn] for one in (found.whole, found.gas, found.inertia) if one is not None
-    ]
-    whole, *parts = spectra
-    orders, name = source.results.orders[drawn], Words("|M_ν|", words="amplitude")
-    both = len(parts) == 2 and all(part.any() for part in parts)  # one alone is all
+    machine = source.results.machine
+    is_drawn = source.results.orders <= _HIGHEST
+    orders = source.results.orders[is_drawn]
+    name = Words("|M_ν|", words="amplitude")
+    whole = np.abs(machine.whole)[is_drawn]
+    parts = []
+    for spectrum in (machine.gas, machine.inertia):
+        if spectrum is not None:
+            parts.append(np.abs(spectrum)[is_drawn])
+    # a single part is all
+    has_both = len(parts) == 2 and all(part.any() for part in parts)
     if whole.any():
-        yield _bars(orders, [whole], name, "torque", "all" if both else "")
-    if both:
+        yield _bars(orders, [whole], name, "torque", "all" if has_both else "")
+    if has_both:
         yield _bars(orders, parts, name, "torque", "left: gas, weight, friction; right: inertia")
 
 
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
     """Radii of the circles on which unbalanced force and moment turn, order by order, with the shaft and against it."""
-    omega, free, panels = source.results.omega, source.results.free, list[Panel]()
+    omega = source.results.omega
+    free = source.results.free
+    title = "left: turning with the shaft, right: against it"
+    panels = []
     for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
-        if source.having("F_x") and vector is not None and free.orders:
-            sizes = [
-                np.array([abs(vector.of(sense * n)) for n in free.orders]) * omega**2
-                for sense in (1, -1)
-            ]
-            title = "left: turning with the shaft, right: against it"
-            panels.append(_bars(free.orders, sizes, Words(name, words="radius"), kind, title))
+        if vector is None or not free.orders or not source.having("F_x"):
+            continue
+        radii = []
+        for sense in (1, -1):
+            amplitudes = np.array([abs(vector.of(sense * order)) for order in free.orders])
+            radii.append(amplitudes * omega**2)
+        panels.append(_bars(free.orders, radii, Words(name, words="radius"), kind, title))
+
     # what is balanced has nothing to show, unless all is
-    yield from [
-        panel for panel in panels if any(shade.high.any() for shade in panel.shades)
-    ] or panels[:1]
+    with_bars = [panel for panel in panels if any(shade.high.any() for shade in panel.shades)]
+    yield from with_bars or panels[:1]
 
 
 def _bars(
     orders: Sequence[float], sizes: Sequence[Array], name: Words, kind: str, title: str
 ) -> Panel:
     """Return one or two rows of sizes as bars over orders, next to each other."""
-    wide, shades = 0.76 / len(sizes), list[Shade]()
+    bar_width = 0.76 / len(sizes)
+    shades = []
     for number, row in enumerate(sizes):
-        for place, size in enumerate(row):
-            x = place - 0.38 + np.array([number, number + 1]) * wide
-            shades.append(Shade(x, np.zeros(2), np.full(2, size), number == 0))
+        edges = np.array([number, number + 1]) * bar_width - 0.38
+        for index, size in enumerate(row):
+            shades.append(Shade(index + edges, np.zeros(2), np.full(2, size), number == 0))
     names = tuple(f"{order:g}" for order in orders)
-    x_axis = Axis(
-        Words("n", words="order"), low=-0.6, high=max(len(names), _LEAST_BARS) - 0.4, names=names
-    )
+    high = max(len(names), _LEAST_BARS) - 0.4
+    x_axis = Axis(Words("n", words="order"), low=-0.6, high=high, names=names)
     return Panel(x_axis, Axis(name, kind, low=0.0), shades=tuple(shades), title=title)
 
 
 def shaft_modes(source: Source) -> Iterator[Panel]:
     """Angles by which the masses of the shaft line turn in its first natural vibrations."""
-    found, curves = source.results, list[Curve]()
-    names = tuple(mass.name for mass in found.line.masses)
-    places = np.arange(float(len(names)))
+    vibration = source.results
+    names = tuple(mass.name for mass in vibration.line.masses)
+    numbers = np.arange(float(len(names)))
+    curves = []
     for mode, frequency in _frequencies(source):
-        angles = np.asarray(found.holzer(mode).angles, dtype=float)
-        curves.append(
-            Curve(Words(f"{mode}: {frequency:.4g} Hz"), places, angles / np.abs(angles).max())
-        )
+        angles = np.asarray(vibration.holzer(mode).angles, dtype=float)
+        relative = angles / np.abs(angles).max()
+        curves.append(Curve(Words(f"{mode}: {frequency:.4g} Hz"), numbers, relative))
     if curves:
         up = Axis(Words("θ", words="angle over the largest"))
-        yield Panel(Axis(Words(""), names=names), up, (*curves, level(places)))
+        yield Panel(Axis(Words(""), names=names), up, (*curves, level(numbers)))
 
 
 def _frequencies(source: Source) -> list[tuple[int, float]]:
     """Return the first modes of a shaft line, each with its frequency in Hz."""
-    found = source.results
-    omegas = found.modes.omegas[1 - found.first :][:_MODES]
+    vibration = source.results
+    omegas = vibration.modes.omegas[1 - vibration.first :][:_MODES]
     return [(mode, float(omega) / (2 * math.pi)) for mode, omega in enumerate(omegas, 1)]
 
 
 def campbell(source: Source) -> Iterator[Panel]:
     """Natural frequencies against the speed with the lines of the orders that excite them; where they cross the speed
     is critical: the strongest, and those near the working speed, the upright line, are marked with the order ν."""
-    found, modes = source.results, _frequencies(source)
-    working = found.machine.speed
-    if not modes or not working:
+    vibration = source.results
+    modes = _frequencies(source)
+    working_speed = vibration.machine.speed
+    if not modes or not working_speed:
         return
-    fastest = _FASTEST * working
-    every = [
-        critical_speed
-        for critical_speed in found.critical_speeds(_MODES, _HIGHEST)
-        if critical_speed.speed <= fastest and critical_speed.share > 0
+    fastest = _FASTEST * working_speed
+
+    # the strongest critical speeds, and those near the working speed
+    critical_speeds = [
+        critical
+        for critical in vibration.critical_speeds(_MODES, _HIGHEST)
+        if critical.speed <= fastest and critical.share > 0
     ]
-    strongest = sorted(every, key=lambda one: -one.share)
-    marked = [one for number, one in enumerate(strongest) if number < _STRONGEST or one.near]
-    orders = sorted({one.order for one in marked})
-    reached = [
-        frequency for _, frequency in modes if frequency <= fastest * max(orders, default=0.0)
-    ]
+    strongest = sorted(critical_speeds, key=lambda critical: -critical.share)
+    marked = strongest[:_STRONGEST]
+    marked += [critical for critical in strongest[_STRONGEST:] if critical.near]
+    orders = sorted({critical.order for critical in marked})
+    highest_excited = fastest * max(orders, default=0.0)
+    reached = [frequency for _, frequency in modes if frequency <= highest_excited]
     top = 1.15 * max(reached, default=modes[0][1])
 
-    curves = [
-        curve(
-            "line",
-            1j * frequency,
-            fastest + 1j * frequency,
-            name=Words(f"f_{mode}", words=f"mode {mode}"),
-        )
-        for mode, frequency in modes
-        if frequency <= top
-    ]
+    # level lines of the modes, lines of the orders through the origin, the working speed upright
+    curves = []
+    for mode, frequency in modes:
+        if frequency <= top:
+            name = Words(f"f_{mode}", words=f"mode {mode}")
+            curves.append(curve("line", 1j * frequency, fastest + 1j * frequency, name=name))
     for order in orders:
         end = min(fastest, top / order)
         curves.append(curve("faint", 0j, complex(end, order * end)))
-    curves.append(
-        curve("faint", complex(working), complex(working, top), name=Words("working speed"))
-    )
-    marks = [
-        Mark(
-            one.speed,
-            one.order * one.speed,
-            PageFigure(Words(f"ν = {one.order:g}:"), one.speed, kind="speed"),
-        )
-        for one in marked
-    ]
-    x, y = (
-        Axis(Words("n", words="speed"), "speed", low=0.0),
-        Axis(Words("f", words="frequency"), "frequency", low=0.0),
-    )
+    working_line = (complex(working_speed), complex(working_speed, top))
+    curves.append(curve("faint", *working_line, name=Words("working speed")))
+
+    marks = []
+    for critical in marked:
+        name = Words(f"ν = {critical.order:g}:")
+        figure = PageFigure(name, critical.speed, kind="speed")
+        marks.append(Mark(critical.speed, critical.order * critical.speed, figure))
+    x = Axis(Words("n", words="speed"), "speed", low=0.0)
+    y = Axis(Words("f", words="frequency"), "frequency", low=0.0)
     yield Panel(x, y, tuple(curves), marks=tuple(marks))
 
 
@@ -273,13 +303,16 @@ def campbell(source: Source) -> Iterator[Panel]:
 def unbalanced_vectors(source: Source) -> Iterator[Panel]:
     """Locus of the tip of the unbalanced force, and of the unbalanced moment, over one revolution."""
     results = source.results
-    each = (
+    vectors = []
+    for x, y, id, largest in (
         ("F_x", "F_y", "F_free_max", results.F_free_max),
         ("M_x", "M_y", "M_free_max", results.M_free_max),
-    )
-    known = [one for one in each if source.having(*one[:2]) == one[:2]]
+    ):
+        if source.having(x, y) == (x, y):
+            vectors.append((x, y, id, largest))
     # what is balanced is a point, which is shown only where all is
-    for x, y, id, largest in [one for one in known if one[3] and one[3].value] or known[:1]:
+    unbalanced = [vector for vector in vectors if vector[3] and vector[3].value]
+    for x, y, id, largest in unbalanced or vectors[:1]:
         tip = partial(_of_components, x, y)
         panel = source.locus(tip, x, source.words(y), cycle=360.0, largest=(id, largest))
         yield panel._replace(x=source.axis(x), y=source.axis(y))
@@ -304,17 +337,14 @@ def polar_loads(source: Source) -> Iterator[Panel]:
     """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod, unless it is
     all but a straight line."""
     largest = source.extreme("load_max")
-    panels = [
-        source.locus(
-            partial(_tip_of_load, frame),
-            "load",
-            source.words("load"),
-            _FRAMES[frame],
-            largest=("load_max", largest),
-        )
-        for frame in source.having(*_FRAMES)
-    ]
-    yield from [panel for panel in panels if _slenderness(panel) < _SLENDEREST] or panels[:1]
+    panels = []
+    for frame in source.having(*_FRAMES):
+        tip = partial(_tip_of_load, frame)
+        name = source.words("load")
+        panel = source.locus(tip, "load", name, _FRAMES[frame], largest=("load_max", largest))
+        panels.append(panel)
+    wide = [panel for panel in panels if _slenderness(panel) < _SLENDEREST]
+    yield from wide or panels[:1]
 
 
 def _tip_of_load(frame: str, state: BearingColumns) -> ComplexArray:
@@ -325,7 +355,8 @@ def _tip_of_load(frame: str, state: BearingColumns) -> ComplexArray:
 
 def _slenderness(panel: Panel) -> float:
     """Return the longer over the shorter side of what the curve of a panel covers."""
-    short, long = sorted(
-        float(np.nanmax(one) - np.nanmin(one)) for one in (panel.curves[0].x, panel.curves[0].y)
-    )
+    locus = panel.curves[0]
+    width = float(np.nanmax(locus.x) - np.nanmin(locus.x))
+    height = float(np.nanmax(locus.y) - np.nanmin(locus.y))
+    short, long = sorted((width, height))
     return long / short if short else math.inf

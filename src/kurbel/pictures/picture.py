@@ -291,7 +291,7 @@ class Grid(NamedTuple):
 class Fact(NamedTuple):
     """A key value on the first page, in SI until it has a unit; where: the parts that have it, if others have less.
 
-    at_deg: its crank angle.
+    at_deg: its crank angle; side: see `KeyValue`.
     """
 
     title: str
@@ -300,6 +300,7 @@ class Fact(NamedTuple):
     where: str
     at_deg: float | None
     unit: str = ""
+    side: str = ""
 
     @property
     def symbol(self) -> str:

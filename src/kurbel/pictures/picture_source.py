@@ -54,9 +54,12 @@ class Sampled(NamedTuple):
 
     def curve(self, name: Words, x: Array, y: Array) -> Curve:
         """Return the curve through points x, y (n,) at these angles, with a gap where either jumps."""
-        breaks, points = np.flatnonzero(np.diff(self.degrees) == 0), np.stack((x, y))
-        jumps = np.abs(np.diff(points)[:, breaks]) > _JUMP * np.ptp(points, axis=1, keepdims=True)
-        return Curve(name, *np.insert(points, breaks[jumps.any(axis=0)] + 1, np.nan, axis=1))
+        breaks = np.flatnonzero(np.diff(self.degrees) == 0)
+        points = np.stack((x, y))
+        sizes = np.ptp(points, axis=1, keepdims=True)
+        steps = np.abs(np.diff(points)[:, breaks])
+        jumps = (steps > _JUMP * sizes).any(axis=0)
+        return Curve(name, *np.insert(points, breaks[jumps] + 1, np.nan, axis=1))
 
 
 def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:
@@ -66,26 +69,33 @@ def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:
     angles (n,) that are on the same side of a break, and returns quantities (k, n). Intervals are halved where the
     point in their middle is off the line.
     """
+    # equal steps on each piece, both its ends included
     counts = np.ceil(np.diff(breaks) / _WIDEST).astype(int) + 1
     piece = np.repeat(np.arange(len(counts)), counts)
-    number = np.arange(len(piece)) - (counts.cumsum() - counts)[piece]
-    degrees = np.interp(piece + number / (counts - 1)[piece], np.arange(len(breaks)), breaks)
+    first_of_piece = (counts.cumsum() - counts)[piece]
+    share = (np.arange(len(piece)) - first_of_piece) / (counts - 1)[piece]
+    degrees = np.interp(piece + share, np.arange(len(breaks)), breaks)
     within = ((breaks[:-1] + breaks[1:]) / 2)[piece]
     points = values(degrees, within)
-    # a constant has only rounding for its height
-    allowed = np.maximum(np.ptp(points, axis=1) * FINENESS, np.abs(points).max(axis=1) * _JUMP)[
-        :, None
-    ]
-    left = np.flatnonzero(
-        np.diff(within) == 0
-    )  # the points before the intervals that are not known to be straight
+
+    # how far a point may be off the line; a constant has only rounding for its height
+    heights = np.ptp(points, axis=1) * FINENESS
+    rounding = np.abs(points).max(axis=1) * _JUMP
+    allowed = np.maximum(heights, rounding)[:, None]
+
+    # left: the points before the intervals that are not known to be straight
+    left = np.flatnonzero(np.diff(within) == 0)
     for _ in range(_HALVINGS):
-        middle, side = (degrees[left] + degrees[left + 1]) / 2, within[left]
-        found = values(middle, side)
-        off = (np.abs(found - (points[:, left] + points[:, left + 1]) / 2) > allowed).any(axis=0)
-        degrees, within = np.insert(degrees, left + 1, middle), np.insert(within, left + 1, side)
-        points = np.insert(points, left + 1, found, axis=1)
-        halves = (left + np.arange(len(left)))[off]
+        middle = (degrees[left] + degrees[left + 1]) / 2
+        side = within[left]
+        exact = values(middle, side)
+        on_line = (points[:, left] + points[:, left + 1]) / 2
+        is_off = (np.abs(exact - on_line) > allowed).any(axis=0)
+        degrees = np.insert(degrees, left + 1, middle)
+        within = np.insert(within, left + 1, side)
+        points = np.insert(points, left + 1, exact, axis=1)
+        # each insertion moves the points after it by one
+        halves = (left + np.arange(len(left)))[is_off]
         left = np.sort(np.append(halves, halves + 1))
         if not len(left):
             break
@@ -96,10 +106,12 @@ class Source:
     """The results of one cylinder, bearing or machine; angles: in degrees at which a mechanism is drawn, if any."""
 
     def __init__(self, results: Any, angles: Sequence[float] | None) -> None:
-        self.results, self.angles = results, angles
+        self.results = results
+        self.angles = angles
         self.quantities: dict[str, Quantity] = {}
         self.key_values: dict[str, Quantity] = {}
-        if isinstance(results, Results):  # others have no columns
+        # others have no columns
+        if isinstance(results, Results):
             self.quantities = {column.id: column for column in results.lists.all_columns}
             self.key_values = results.lists.key_values(results.command)
 
@@ -132,7 +144,8 @@ class Source:
         """Return lines (k, n) in SI at crank angles (n,)."""
         degrees = np.atleast_1d(np.asarray(degrees, dtype=float))
         state = self.results.at(degrees, degrees if within is None else within)
-        return np.array([np.broadcast_to(of(state), degrees.shape) for _, of in lines], dtype=float)
+        rows = [np.broadcast_to(formula(state), degrees.shape) for _, formula in lines]
+        return np.array(rows, dtype=float)
 
     def samples(
         self,
@@ -146,47 +159,48 @@ class Source:
         breaks: instead of those of the results; beyond the end of the cycle it begins again. Raises UsageError where a
         line has left the range of floats.
         """
-        ends, cycle = self.results.breaks, self.results.breaks[-1]
+        ends = self.results.breaks
+        cycle = ends[-1]
 
         def values(degrees: Array, within: Array) -> Array:
             turned = cycle * np.floor(within / cycle)
             return self.values(lines, degrees - turned, within - turned)
 
         # not numpy.unique, which loads numpy.ma, a fifth of the whole start-up
-        every = sorted(
-            {
-                *(ends.tolist() if breaks is None else breaks),
-                *(one for one in also if 0 < one < cycle),
-            }
-        )
-        found = sampled(np.array(every), values)
-        if not np.isfinite(found.values).all():
+        all_breaks = set(ends.tolist() if breaks is None else breaks)
+        all_breaks.update(angle for angle in also if 0 < angle < cycle)
+        samples = sampled(np.array(sorted(all_breaks)), values)
+        if not np.isfinite(samples.values).all():
             raise too_large(self.quantities[id])
-        return found
+        return samples
 
     def extreme(self, id: str) -> Extreme | None:
         """Return the key value of this id, if there is one and it is an extreme."""
-        found = self.results.rows.key_values[id].of(self.results) if id in self.key_values else None
-        return found if isinstance(found, Extreme) else None
+        if id not in self.key_values:
+            return None
+        value = self.results.rows.key_values[id].of(self.results)
+        return value if isinstance(value, Extreme) else None
 
     def marks(self, id: str, place: Callable[[float], float | complex] = float) -> tuple[Mark, ...]:
         """Return marks at the extremes of a column, none for a constant; place: see `mark`, at a crank angle."""
-        both = {name: found for name in (f"{id}_max", f"{id}_min") if (found := self.extreme(name))}
-        constant = len({one.value for one in both.values()}) < len(both)
-        return (
-            ()
-            if constant
-            else tuple(self.mark(name, one, place(one.degrees)) for name, one in both.items())
+        extremes = {}
+        for name in (f"{id}_max", f"{id}_min"):
+            extreme = self.extreme(name)
+            if extreme is not None:
+                extremes[name] = extreme
+        values = {extreme.value for extreme in extremes.values()}
+        is_constant = len(values) < len(extremes)
+        if is_constant:
+            return ()
+        return tuple(
+            self.mark(name, extreme, place(extreme.degrees)) for name, extreme in extremes.items()
         )
 
     def mark(self, id: str, extreme: Extreme, place: float | complex) -> Mark:
         """Return an extreme, which is the key value of this id, at x, with its value for y, or at a point x + iy."""
         point = place if isinstance(place, complex) else complex(place, extreme.value)
-        return Mark(
-            point.real,
-            point.imag,
-            PageFigure(self.words(id), extreme.value, at_deg=extreme.degrees),
-        )
+        figure = PageFigure(self.words(id), extreme.value, at_deg=extreme.degrees)
+        return Mark(point.real, point.imag, figure)
 
     def panel(
         self,
@@ -207,38 +221,55 @@ class Source:
         line. shaded: what is between the first line and the last, or zero, if there is one line; faint: the last line,
         to compare with; zero: with the line y = 0.
         """
+        # the lines over the column, and the last one faint
         ids = [line for line in lines if isinstance(line, str)]
-        drawn = [
-            self.line(line, words.get(line, "")) if isinstance(line, str) else line
-            for line in lines
-        ]
-        samples = self.samples(like or ids[0], [self.line(over), *drawn], also, breaks)
+        named_lines: list[CurveFormula] = []
+        for line in lines:
+            if isinstance(line, str):
+                line = self.line(line, words.get(line, ""))
+            named_lines.append(line)
+        has_no_common_name = len(ids) > 1 and not like
+        like = like or ids[0]
+        samples = self.samples(like, [self.line(over), *named_lines], also, breaks)
         x, *rows = samples.values
-        curves = [samples.curve(name, x, row) for (name, _), row in zip(drawn, rows)]
+        curves = [samples.curve(name, x, row) for (name, _), row in zip(named_lines, rows)]
         curves[-1] = curves[-1]._replace(kind="faint" if faint else "line")
-        curves += [level(x)] if zero else []
-        shades = (
-            between(x, rows[-1] if len(rows) > 1 else np.zeros_like(x), rows[0]) if shaded else ()
-        )
-        place = (
-            float
-            if over == PHI
-            else lambda angle: float(self.values([self.line(over)], angle)[0, 0])
-        )
-        marks = [mark for id in ids for mark in self.marks(id, place)]
-        up = self.axis(like or ids[0])
-        if len(ids) > 1 and not like:
+        if zero:
+            curves.append(level(x))
+
+        shades: Iterable[Shade] = ()
+        if shaded:
+            base = rows[-1] if len(rows) > 1 else np.zeros_like(x)
+            shades = between(x, base, rows[0])
+
+        def place(angle: float) -> float:
+            if over == PHI:
+                return float(angle)
+            return float(self.values([self.line(over)], angle)[0, 0])
+
+        marks: list[Mark] = []
+        for id in ids:
+            marks += self.marks(id, place)
+        up = self.axis(like)
+        if has_no_common_name:
             up = up._replace(name=Words("", words=up.kind.replace("_", " ")))
-        title = title if np.any(rows) else ZERO
-        return Panel(self.axis(over), up, tuple(curves), tuple(shades), tuple(marks), title=title)
+        return Panel(
+            self.axis(over),
+            up,
+            tuple(curves),
+            tuple(shades),
+            tuple(marks),
+            title=title if np.any(rows) else ZERO,
+        )
 
     def panels(
         self, *groups: Sequence[str], words: Mapping[str, str] = NO_WORDS
     ) -> Iterator[Panel]:
         """Yield a panel for each group of columns of one kind, without columns that the results lack."""
-        yield from (
-            self.panel(ids, words=words) for group in groups if (ids := self.having(*group))
-        )
+        for group in groups:
+            ids = self.having(*group)
+            if ids:
+                yield self.panel(ids, words=words)
 
     def point(self, tip: Of[ComplexArray], degrees: float, off: float = 0.0) -> complex:
         """Return where a tip is at a crank angle, at a jump on the side of the angle that is so far off."""
@@ -260,21 +291,32 @@ class Source:
         like them. cycle: degrees after which it repeats, if before the end of the cycle of the machine. largest: its
         largest distance from the pole, with the id of that key value.
         """
-        along = (name, lambda state: tip(state).real), (name, lambda state: tip(state).imag)
+        along: tuple[CurveFormula, CurveFormula] = (
+            (name, lambda state: tip(state).real),
+            (name, lambda state: tip(state).imag),
+        )
         samples = self.samples(id, along)
+
+        # beads at equal angles, every third one with its angle
         angles = np.arange(0.0, min(samples.degrees[-1], cycle), _BEADS)
         x, y = self.values(along, angles)
-        figures = [PageFigure(NO_NAME, at_deg=one) for one in angles[::3].tolist()]
-        marks = [Mark(*one) for one in zip(x[::3].tolist(), y[::3].tolist(), figures)]
+        marks = []
+        for index in range(0, len(angles), 3):
+            figure = PageFigure(NO_NAME, at_deg=float(angles[index]))
+            marks.append(Mark(float(x[index]), float(y[index]), figure))
         key_value, extreme = largest
         if extreme and extreme.value:
             # at a jump it is on one of the two sides
             sides = [self.point(tip, extreme.degrees, off) for off in (-1e-6, 1e-6)]
-            place = min(sides, key=lambda one: abs(abs(one) - extreme.value))
-            marks.insert(0, self.mark(key_value, extreme, place))
-        curves = samples.curve(name, *samples.values).closed(), Curve(NO_NAME, x, y, "beads")
-        pole, axis = Curve(NO_NAME, np.zeros(1), np.zeros(1), "pole"), Axis(Words("F"), "force")
-        return Panel(axis, axis, (*curves, pole), marks=tuple(marks), equal=True, title=title)
+            nearest = min(sides, key=lambda point: abs(abs(point) - extreme.value))
+            marks.insert(0, self.mark(key_value, extreme, nearest))
+
+        closed = samples.curve(name, *samples.values).closed()
+        beads = Curve(NO_NAME, x, y, "beads")
+        pole = Curve(NO_NAME, np.zeros(1), np.zeros(1), "pole")
+        axis = Axis(Words("F"), "force")
+        curves = (closed, beads, pole)
+        return Panel(axis, axis, curves, marks=tuple(marks), equal=True, title=title)
 
 
 def curve(kind: str, *places: complex, name: Words = NO_NAME, look: int | None = None) -> Curve:
@@ -307,44 +349,41 @@ def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
 def in_units(panel: Panel, system: str) -> Panel:
     """Return a panel, which is in SI, in the units of a system: one for each axis, and one for the works in shades."""
     across, up = panel.places
-    up += [
-        np.array([one]) for one in (panel.y.low, panel.y.high) if one is not None
-    ]  # shared by several panels
+    # bounds of an axis that several panels share
+    for bound in (panel.y.low, panel.y.high):
+        if bound is not None:
+            up = [*up, np.array([bound])]
     if panel.equal:
         across = up = across + up
     works = [np.array([shade.figure.value]) for shade in panel.shades if shade.figure]
-    units, kinds = dict[str, str](), {"energy": works, panel.x.kind: across, panel.y.kind: up}
-    for kind, values in kinds.items():
-        largest = max(
-            (float(np.nanmax(np.abs(value))) for value in values if value.size), default=0.0
-        )
-        units[kind] = shown_unit(kind, system, largest) if kind else ""
-    x, y = (partial(convert, kind=one.kind, unit=units[one.kind]) for one in (panel.x, panel.y))
 
-    def figure(one: PageFigure) -> PageFigure:
-        kind = one.kind or panel.y.kind
-        return one._replace(
-            value=one.value and convert(one.value, kind, units[kind]), unit=units[kind]
-        )
+    # the unit of each kind, by its largest value
+    values_of_kinds = {"energy": works, panel.x.kind: across, panel.y.kind: up}
+    units: dict[str, str] = {}
+    for kind, arrays in values_of_kinds.items():
+        sizes = [float(np.nanmax(np.abs(values))) for values in arrays if values.size]
+        units[kind] = shown_unit(kind, system, max(sizes, default=0.0)) if kind else ""
+    x = partial(convert, kind=panel.x.kind, unit=units[panel.x.kind])
+    y = partial(convert, kind=panel.y.kind, unit=units[panel.y.kind])
 
+    def converted(figure: PageFigure) -> PageFigure:
+        kind = figure.kind or panel.y.kind
+        value = figure.value and convert(figure.value, kind, units[kind])
+        return figure._replace(value=value, unit=units[kind])
+
+    shades = []
+    for shade in panel.shades:
+        figure = shade.figure and converted(shade.figure)
+        shades.append(Shade(x(shade.x), y(shade.low), y(shade.high), shade.gain, figure))
+    captions = [
+        caption._replace(place=x(caption.place), half=x(caption.half)) for caption in panel.captions
+    ]
     return panel._replace(
         x=panel.x.shown(x, units[panel.x.kind]),
         y=panel.y.shown(y, units[panel.y.kind]),
-        curves=tuple(one._replace(x=x(one.x), y=y(one.y)) for one in panel.curves),
-        shades=tuple(
-            Shade(
-                x(shade.x),
-                y(shade.low),
-                y(shade.high),
-                shade.gain,
-                shade.figure and figure(shade.figure),
-            )
-            for shade in panel.shades
-        ),
-        marks=tuple(Mark(x(mark.x), y(mark.y), figure(mark.figure)) for mark in panel.marks),
+        curves=tuple(curve._replace(x=x(curve.x), y=y(curve.y)) for curve in panel.curves),
+        shades=tuple(shades),
+        marks=tuple(Mark(x(mark.x), y(mark.y), converted(mark.figure)) for mark in panel.marks),
         bodies=tuple(body.scaled(x(1.0)) for body in panel.bodies),
-        captions=tuple(
-            caption._replace(place=x(caption.place), half=x(caption.half))
-            for caption in panel.captions
-        ),
+        captions=tuple(captions),
     )

@@ -83,20 +83,39 @@ def _remaining_force(source: Source) -> list[CurveFormula]:
 
 
 def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
-    """Piston force over the displacement, stroke by stroke; with inertia it is what is between P_0 and the inertia line
-    (R Abb. 1055)."""
+    """Piston force over the displacement, stroke by stroke; with inertia it is what is between P_0 and the inertia
+    line. J: force reversal (R Abb. 1055)."""
     if len(source.having("P", "x")) < 2 or source.results.drive.mechanism.turns:
         return
     lines, reversals = _remaining_force(source), source.results.phi_reversal or ()
-    panels = [
-        source.panel(lines, "x", like="P", shaded=True, zero=True, breaks=breaks, title=title)
-        for breaks, title in _strokes(source, reversals)
-    ]
+    panels = []
+    for breaks, title in _strokes(source, reversals):
+        panel = source.panel(
+            lines, "x", like="P", shaded=True, zero=True, breaks=breaks, title=title
+        )
+        marks = _reversals_of_stroke(source, lines, reversals, breaks)
+        panels.append(panel._replace(marks=(*panel.marks, *marks)))
     # one scale for all, or the noise of a traced gas exchange would have its own
     heights = np.concatenate([one for panel in panels for one in panel.places[1]])
     low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
     low -= 0.1 * (high - low)  # or a lowest line that is level would be on the axis
     yield from (panel._replace(y=panel.y._replace(low=low, high=high)) for panel in panels)
+
+
+def _reversals_of_stroke(
+    source: Source,
+    lines: Sequence[CurveFormula],
+    reversals: Sequence[float],
+    breaks: Sequence[float],
+) -> Iterator[Mark]:
+    """Yield a mark J where the piston force reverses in a stroke: on the inertia line, else on zero."""
+    start, end = breaks[0], breaks[-1]
+    for angle in reversals:
+        is_inside = start < angle < end or start < angle + source.results.drive.cycle < end
+        if is_inside:
+            state = source.results.at([angle])
+            height = float(lines[1][1](state)[0]) if len(lines) > 1 else 0.0
+            yield Mark(float(state.x[0]), height, PageFigure(Words("J"), at_deg=angle))
 
 
 def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[list[float], str]]:
@@ -121,11 +140,10 @@ def piston_force_of_crank(source: Source) -> Iterator[Panel]:
     drive = source.results.drive
     if len(source.having("P", "x")) < 2 or not (drive.drives and drive.driven):
         return
+    has_losses = bool(drive.machine.efficiency != 1)
+    driving = Words("η P_driving", "eta P_driving") if has_losses else Words("P_driving")
     lines: list[CurveFormula] = [
-        (
-            Words("η P_driving", "eta P_driving"),
-            lambda state: drive.machine.efficiency * state.P_driving,
-        ),
+        (driving, lambda state: drive.machine.efficiency * state.P_driving),
         (Words("−P_driven"), lambda state: -driven_force(state)),
     ]
     if source.having("P_inertia"):
@@ -218,7 +236,19 @@ def motion_over_stroke(source: Source) -> Iterator[Panel]:
     """Velocity and acceleration over the displacement; dashed those of an infinite rod, an ellipse and a straight line
     (R Abb. 1049, 1050)."""
     for id in source.having("c", "b") if source.having("x") else ():
-        yield _with_infinite_rod(source, id, "x")
+        panel = _with_infinite_rod(source, id, "x")
+        marks = _zeros_of_acceleration(source) if id == "b" else ()
+        yield panel._replace(marks=(*panel.marks, *marks))
+
+
+def _zeros_of_acceleration(source: Source) -> Iterator[Mark]:
+    """Yield marks where b passes zero, one for both strokes if they are at the same displacement."""
+    displacements = set[float]()
+    for angle in source.results.motion.phi_b_zero or ():
+        x = float(source.results.at([angle]).x[0])
+        if round(x, 9) not in displacements:
+            displacements.add(round(x, 9))
+            yield Mark(x, 0.0, PageFigure(Words("b = 0"), at_deg=angle))
 
 
 def _with_infinite_rod(source: Source, id: str, over: str) -> Panel:

@@ -26,10 +26,7 @@ _TRUNK, _DISC, _PLUNGER = 0.9, 0.32, 0.6  # heights of pistons over the bore
 WALL, _COVER, _ROD = 0.06, 0.1, 0.08  # of the bore; the last is the radius of a piston rod
 _GLAND = 2.6  # length of cover and stuffing box over that of the cover
 _PIN, _JOURNAL = 0.2, 0.27  # radii over the crank radius
-_WEIGHT, _LIGHT = (
-    0.95,
-    0.76,
-)  # radius of a counterweight over that of the crank, if some are given, and if none are
+_WEIGHT = 0.95  # radius of a counterweight over that of the crank
 EYE, _HUB = 1.55, 1.45  # radii of eye and hub over those of pin and journal
 SHOE = 0.36  # half the length and height of a crosshead over the crank radius
 
@@ -90,9 +87,9 @@ class Train:
         self.journal = (
             shaft.journal_diameter / 2 if shaft and shaft.journal_diameter else _JOURNAL * self.R
         )
-        self.weight = self.R * (
-            _WEIGHT if machine.counterweights or self.cylinder.counterweights else _LIGHT
-        )
+        self.has_counterweight = bool(machine.counterweights or self.cylinder.counterweights)
+        hub = _HUB * self.journal
+        self.weight = max(_WEIGHT * self.R, hub) if self.has_counterweight else hub
 
         self.is_engine = bool(mechanism.slides) and not mechanism.quick_return
         self.has_slot = self.is_engine and bool(sketch.blocks)
@@ -319,14 +316,15 @@ def cranks(train: Train) -> Iterator[Body]:
 
 
 def _crank(train: Train, R: float) -> Iterator[Shape]:
-    """Yield a web with its counterweight, hub and eye."""
+    """Yield a web with the counterweight that the file gives it, hub and eye."""
     hub, eye, around = (
         _HUB * train.journal,
         EYE * train.pin,
         np.radians(np.linspace(142.0, 218.0, 11)),
     )
     yield _polygon("web", hub * -1j, R - eye * 1j, R + eye * 1j, hub * 1j)
-    yield _polygon("web", hub * 1j, *train.weight * np.exp(1j * around), hub * -1j)
+    if train.has_counterweight:
+        yield _polygon("web", hub * 1j, *train.weight * np.exp(1j * around), hub * -1j)
     yield from (
         disc("web", eye, R),
         disc("web", hub),

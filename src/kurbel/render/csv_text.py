@@ -1,7 +1,7 @@
 """Results as CSV, with all digits: for spreadsheets and other programs."""
 
 import csv
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import repeat
 
 from kurbel.render import Look
@@ -37,9 +37,11 @@ def csv_cell(
         text = look.data(value)
         return f"'{text}" if text.startswith(_FORMULA) else text
     if isinstance(value, tuple):
-        return " ".join(str(csv_cell(one, look)) for one in value)
+        return " ".join(str(csv_cell(number, look)) for number in value)
     number = rounded(value, None if in_full else look.digits)
-    return number if value is None or not look.comma else repr(number).replace(".", ",")
+    if number is None or not look.comma:
+        return number
+    return repr(number).replace(".", ",")
 
 
 Cells = dict[str, Iterable[object]]
@@ -53,80 +55,87 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
     key values. Several parts follow one another, with their names in a first column.
     """
     parts = report.all_parts
-    places = [
-        (part, [place_table for place_table in part.place_tables if place_table.id != PISTONS])
-        for part in parts
-    ]
-    if any(part.columns for part in parts):
-        blocks = [(part, [_columns(part.columns, look)]) for part in parts if part.columns]
-    elif any(tables for _, tables in places):
-        blocks = [
-            (part, [_of_places(table, look) for table in tables])
-            for part, tables in places
-            if tables
-        ]
-    else:
-        blocks = [(part, [_of_key_values(part, look)]) for part in parts]
-    named = len(blocks) + sum(bool(part.nowhere) for part in parts) > 1 or report.group in (
-        "ratios",
-        "scenes",
-    )
-    names = {
-        head
-        for part in parts
-        for place_table in part.place_tables
-        for head in ("table", *place_table.heads)
-    }
-    every = dict.fromkeys(head for _, tables in blocks for cells in tables for head in cells)
-    heads = sorted(
-        every, key=lambda head: head not in names
-    )  # otherwise in order of their first occurrence
+    blocks = _blocks(parts, look)
+    parts_without_results = sum(bool(part.nowhere) for part in parts)
+    several = len(blocks) + parts_without_results > 1
+    is_named = several or report.group in ("ratios", "scenes")
+
+    heads = _heads(parts, blocks)
+    first_head = [_FIRST.get(report.group, "cylinder")] if is_named else []
     line = csv_line(look)
-    yield line([_FIRST.get(report.group, "cylinder"), *heads] if named else heads)
+    yield line([*first_head, *heads])
     for part, tables in blocks:
         name = part.name if isinstance(part.name, str) else whole_if_integral(part.name)
-        beside = [csv_cell(name, look, True)] if named else []
-        for cells in tables:
-            rows = zip(*(cells.get(head, repeat("")) for head in heads))
-            yield from (line((*beside, *row)) for row in rows)
+        first_cell = [csv_cell(name, look, True)] if is_named else []
+        for table_cells in tables:
+            columns = [table_cells.get(head, repeat("")) for head in heads]
+            for row in zip(*columns):
+                yield line([*first_cell, *row])
+
+
+def _blocks(parts: Sequence[Part], look: Look) -> list[tuple[Part, list[Cells]]]:
+    """Return what is written of each part: its columns, else its tables of places, else its key values."""
+    with_columns = [part for part in parts if part.columns]
+    if with_columns:
+        return [(part, [_columns(part.columns, look)]) for part in with_columns]
+
+    blocks = []
+    for part in parts:
+        tables = [table for table in part.place_tables if table.id != PISTONS]
+        if tables:
+            blocks.append((part, [_of_places(table, look) for table in tables]))
+    return blocks or [(part, [_of_key_values(part, look)]) for part in parts]
+
+
+def _heads(parts: Sequence[Part], blocks: Sequence[tuple[Part, list[Cells]]]) -> list[str]:
+    """Return all heads, those of names first, otherwise in the order of their first occurrence."""
+    heads_of_names = {"table"}
+    for part in parts:
+        for place_table in part.place_tables:
+            heads_of_names.update(place_table.heads)
+    heads: dict[str, None] = {}
+    for _, tables in blocks:
+        for table_cells in tables:
+            heads |= dict.fromkeys(table_cells)
+    return sorted(heads, key=lambda head: head not in heads_of_names)
 
 
 def _columns(columns: Iterable[Column], look: Look) -> Cells:
     """Return the cells of columns by id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio."""
-    found: Cells = {}
+    cells: Cells = {}
     for column in columns:
         unit = column.unit.replace(" abs", "_abs").replace(" ", "")
-        found[f"{column.id}_{unit}" if unit else column.id] = _cells(column, look)
-    return found
+        head = f"{column.id}_{unit}" if unit else column.id
+        cells[head] = _cells(column, look)
+    return cells
 
 
 def _cells(column: Column, look: Look) -> Iterator[object]:
     """Yield the values of a column; crank angles have all digits, whole ones no decimal point."""
     for value in column.values:
-        yield (
-            csv_cell(whole_if_integral(value), look, True)
-            if column.id == "phi"
-            else csv_cell(value, look)
-        )
+        if column.id == "phi":
+            yield csv_cell(whole_if_integral(value), look, True)
+        else:
+            yield csv_cell(value, look)
 
 
 def _of_places(table: PlaceTable, look: Look) -> Cells:
-    names = ([csv_cell(name, look) for name in column] for column in zip(*table.names))
-    return {
-        "table": repeat(table.id, len(table.names)),
-        **dict(zip(table.heads, names)),
-        **_columns(table.columns, look),
-    }
+    cells: Cells = {"table": repeat(table.id, len(table.names))}
+    for head, names in zip(table.heads, zip(*table.names)):
+        cells[head] = [csv_cell(name, look) for name in names]
+    return cells | _columns(table.columns, look)
 
 
 def _of_key_values(part: Part, look: Look) -> Cells:
     """Return the cells of key values: a row for each, and for each value of a list."""
-    rows = []
+    rows: list[tuple[object, ...]] = []
     for key_value in part.key_values:
         at = csv_cell(key_value.at_deg, look, True)
-        values = key_value.value if isinstance(key_value.value, tuple) else (key_value.value,)
-        rows += [(key_value.id, key_value.unit, csv_cell(value, look), at) for value in values]
-    return {
-        head: [row[k] for row in rows]
-        for k, head in enumerate(("key_value", "unit", "value", "at_deg"))
-    }
+        value_or_list = key_value.value
+        values = value_or_list if isinstance(value_or_list, tuple) else (value_or_list,)
+        for value in values:
+            rows.append((key_value.id, key_value.unit, csv_cell(value, look), at))
+    heads = ("key_value", "unit", "value", "at_deg")
+    if not rows:
+        return {head: [] for head in heads}
+    return dict(zip(heads, map(list, zip(*rows))))

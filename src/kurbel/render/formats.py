@@ -1,6 +1,6 @@
 """The text of a report in each format, and its output; only the format that is wanted is loaded."""
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from kurbel.render import Look
@@ -31,7 +31,7 @@ def _pieces(report: Report, look: Look) -> Iterable[str]:
     return markup(report, look)
 
 
-def _lines(report: Report, look: Look, first: Collection[str] | None = None) -> Iterator[Line]:
+def _lines(report: Report, look: Look, first: Sequence[str] | None = None) -> Iterator[Line]:
     from kurbel.render.page import fitting, page_lines
 
     return page_lines(report, look) if first is None else fitting(report, look, first)
@@ -43,7 +43,7 @@ class Output(NamedTuple):
     look: Look
     file_name: str | None
 
-    def write(self, report: Report, first: Collection[str] | None = None) -> None:
+    def write(self, report: Report, first: Sequence[str] | None = None) -> None:
         """Write the report to the file (as UTF-8), or to standard output in its encoding. Raises UsageError.
 
         first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.

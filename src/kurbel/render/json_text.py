@@ -111,7 +111,9 @@ def _results(part: Part, look: Look) -> Content:
                 {"id": table.id, "title": table.title, **rows, "columns": list(table.columns)}
             )
     for one in part.key_values:
-        at = {} if one.at_deg is None else {"at_deg": number(one.at_deg)}
+        at: Content = {} if one.at_deg is None else {"at_deg": number(one.at_deg)}
+        if one.side:
+            at["side"] = one.side
         value = list(map(number, one.value)) if isinstance(one.value, tuple) else number(one.value)
         key_values.append(key_value(one, value, **at))
     return {

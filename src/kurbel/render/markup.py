@@ -21,7 +21,8 @@ from kurbel.render.text_tables import (
     place_table,
     sheets,
 )
-from kurbel.tables.tables import Report, shown_once
+from kurbel.tables.sources import legend_of
+from kurbel.tables.tables import Report, for_people, notes_for_people
 
 _ON_PAPER = 9
 """Columns of numbers, apart from that of the angle, that fit on A4; further ones go into another table."""
@@ -220,13 +221,12 @@ def _formula(one: str) -> str:
 
 def document(report: Report, out: Writer) -> Iterator[str]:
     """Yield the text of the report piece by piece; identical cylinders appear once."""
-    report, look = shown_once(report), out.look
+    report, look = for_people(report), out.look
     yield out.title.format(out.words(report.title))
     yield from (out.paragraph.format(out.prose(text)) for text in report.head)
     yield from written(over_angle(report, out), out)
     yield from written(of_places(report, out), out)
-    notes = [note for note in (report.mirrored, *report.notes) if note]
-    yield from (out.paragraph.format(out.prose(note)) for note in notes)
+    yield from (out.paragraph.format(out.prose(note)) for note in notes_for_people(report))
     for part in report.all_parts:
         name = part_name(report, part, look)
         of = f": {name}" if name else ""
@@ -236,6 +236,8 @@ def document(report: Report, out: Writer) -> Iterator[str]:
                 yield from written([key_value_table(caption, key_values, look)], out)
         yield from listed(f"Left out{of}", [f"{one.what}: {one.why}" for one in part.left_out], out)
         yield from listed(f"Warnings{of}", part.warnings, out)
+    if books := legend_of(report):
+        yield out.paragraph.format(out.prose(books))
 
 
 def listed(title: str, sentences: Collection[str], out: Writer) -> Iterator[str]:

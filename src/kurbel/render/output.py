@@ -8,11 +8,13 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from io import TextIOWrapper
-from typing import BinaryIO, TextIO
+from typing import TYPE_CHECKING, BinaryIO, TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.text import BLANK, Line, in_two_columns, paragraph, plain_lines
+
+if TYPE_CHECKING:
+    from kurbel.render.text import Line
 
 STYLES = {
     "title": "bold",
@@ -41,6 +43,8 @@ def listing(
     title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]], look: Look
 ) -> str:
     """Return a title and sections, each a head line with its entries, as plain text."""
+    from kurbel.render.text import BLANK, in_two_columns, paragraph, plain_lines
+
     lines = paragraph(look.text(title), look.width)
     for name, entries in sections:
         lines += [BLANK, *paragraph(look.text(name), look.width), *in_two_columns(entries, look)]
@@ -49,6 +53,8 @@ def listing(
 
 def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
     """Write heads in a column, each with its text, to a file or to standard output."""
+    from kurbel.render.text import in_two_columns, plain_lines
+
     write_out(plain_lines(in_two_columns(found, look_at(file_name, Look()), "")), file_name)
 
 
@@ -86,9 +92,11 @@ def _stdout() -> TextIO:
     return sys.stdout
 
 
-def write_lines(lines: Iterable[Line], look: Look) -> None:
+def write_lines(lines: "Iterable[Line]", look: Look) -> None:
     """Write lines to standard output, in colour on a terminal unless colours are not wanted."""
     if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+        from kurbel.render.text import plain_lines
+
         write_out(plain_lines(lines), None, look.encoding)
         return
     from rich.console import Console  # takes longer to load than most tables to print

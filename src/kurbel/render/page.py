@@ -2,7 +2,7 @@
 
 import re
 import sys
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import chain, islice
 
 from kurbel.render import Look
@@ -27,7 +27,8 @@ from kurbel.render.text_tables import (
     place_table,
     sheets,
 )
-from kurbel.tables.tables import KeyValue, Report, first_selection, shown_once
+from kurbel.tables.sources import legend_of
+from kurbel.tables.tables import KeyValue, Report, first_selection, for_people, notes_for_people
 
 _NINE = 9  # angles to a block: the book breaks after 80°
 _SIDE, _CELL = 14, 8
@@ -37,12 +38,59 @@ _LONGEST = 16  # of a number, or two angles; a longer list gets lines of its own
 
 
 def page_lines(report: Report, look: Look) -> Iterator[Line]:
-    """Yield the lines of the whole page."""
-    report = shown_once(report)
+    """Yield the lines of the whole page, the books of its references last."""
+    report = for_people(report)
+    yield from _title(report, look)
+    yield from _tables(report, look)
+    if notes := notes_for_people(report):
+        yield BLANK
+        yield from _sentences("", notes, look)
+    for part in report.all_parts:
+        name = part_name(report, part, look)
+        of = f": {name}" if name else ""
+        if part.key_values:
+            yield from (BLANK, line(f"Key values{of}", "name"))
+            yield from _key_value_lines(part.key_values, look)
+        if part.left_out:
+            yield from (BLANK, line(f"Left out{of}", "name"))
+            yield from in_two_columns(part.left_out, look)
+        if part.warnings:
+            yield from (BLANK, line(f"Warnings{of}", "name"))
+            yield from _sentences("  ", part.warnings, look)
+    if books := legend_of(report):
+        yield from sentence("", books, look)
+
+
+def selection(report: Report, look: Look) -> Iterator[Line]:
+    """Yield the lines of a first selection: the key values, a short table, and what is left out in one line."""
+    yield from _title(report, look)
+    for part in report.all_parts:
+        if part.key_values:
+            name = part_name(report, part, look)
+            yield from (BLANK, line(name, "name")) if name else (BLANK,)
+            yield from _key_value_lines(part.key_values, look)
+    yield from _tables(report, look)
+    yield from _sentences("", report.notes, look)
+    for part in report.all_parts:
+        if part.warnings:
+            name = part_name(report, part, look)
+            yield from (BLANK, line(f"Warnings: {name}" if name else "Warnings", "name"))
+            yield from _sentences("  ", part.warnings, look)
+
+
+def _title(report: Report, look: Look) -> Iterator[Line]:
     yield from paragraph(look.text(report.title), look.width, "title")
     for text in report.head:
         yield from paragraph(look.text(text), look.width)
 
+
+def _sentences(head: str, texts: Iterable[str], look: Look) -> Iterator[Line]:
+    for text in texts:
+        yield from sentence(head, text, look)
+
+
+def _tables(report: Report, look: Look) -> Iterator[Line]:
+    """Yield the tables over the crank angle, and those of places."""
     for heads, bands in sheets(report, look):
         if look.layout == "book":
             yield BLANK
@@ -68,32 +116,20 @@ def page_lines(report: Report, look: Look) -> Iterator[Line]:
             )
         yield from blocks(side, shown.columns[len(side) :], look)
 
-    if notes := [note for note in (report.mirrored, *report.notes) if note]:
-        yield from (BLANK, *(one for note in notes for one in sentence("", note, look)))
-    for part in report.all_parts:
-        name = part_name(report, part, look)
-        of = f": {name}" if name else ""
-        if part.key_values:
-            yield from (
-                BLANK,
-                line(f"Key values{of}", "name"),
-                *_key_value_lines(part.key_values, look),
-            )
-        if part.left_out:
-            yield from (BLANK, line(f"Left out{of}", "name"), *in_two_columns(part.left_out, look))
-        if part.warnings:
-            yield from (BLANK, line(f"Warnings{of}", "name"))
-            yield from (one for warning in part.warnings for one in sentence("  ", warning, look))
 
-
-def fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line]:
+def fitting(report: Report, look: Look, first: Sequence[str]) -> Iterator[Line]:
     """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
     lines, most = page_lines(report, look), terminal_size()[1]
     begin = list(islice(lines, most)) if sys.stdout.isatty() else []
     if len(begin) < most:
         return chain(begin, lines)
     across = max(((look.width or 80) - _SIDE) // _CELL, 4)
-    return page_lines(first_selection(report, first, across, rows=most // 6), look)
+    selected = first_selection(report, first, across, rows=most // 6)
+    first_page = [*selection(selected, look)]
+    # the prompt takes a line, too; a table over the angle must not push key values off the screen
+    if len(first_page) < most or not any(part.key_values for part in selected.all_parts):
+        return iter(first_page)
+    return selection(selected.changed(lambda part: part._replace(columns=())), look)
 
 
 # a line for each row

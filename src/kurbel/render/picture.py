@@ -46,10 +46,8 @@ def legend_text(words: Words, look: Look) -> str:
 
 def figure_text(figure: PageFigure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
-    name, at = (
-        symbol(figure.name, look),
-        "" if figure.at_deg is None else look.degrees(figure.at_deg),
-    )
+    name = symbol(figure.name, look)
+    at = "" if figure.at_deg is None else look.degrees(figure.at_deg)
     if figure.value is None:
         return f"{name} {at}".strip()
     value, unit = look.measured(figure.value, figure.unit)
@@ -59,10 +57,11 @@ def figure_text(figure: PageFigure, look: Look) -> str:
 
 def picture_text(picture: Picture, look: Look) -> str:
     """Return a picture in words: what it shows, and every figure in it."""
-    figures = [
-        mark.figure for panel in picture.panels for mark in panel.marks if mark.figure.name.symbol
-    ]
-    figures += [shade.figure for panel in picture.panels for shade in panel.shades if shade.figure]
+    figures = []
+    for panel in picture.panels:
+        figures += [mark.figure for mark in panel.marks if mark.figure.name.symbol]
+    for panel in picture.panels:
+        figures += [shade.figure for shade in panel.shades if shade.figure]
     texts = "; ".join(dict.fromkeys(figure_text(figure, look) for figure in figures))
     sentence = f"{look.text(picture.heading)}. {look.text(picture.text)}"
     return f"{sentence} {texts}." if texts else sentence
@@ -82,12 +81,11 @@ class AxisScale(NamedTuple):
 
     def place(self, values: Number) -> Array:
         """Return the places of values."""
-        low, high, at = (
-            np.log10(one) if self.axis.log else np.asarray(one)
-            for one in (self.low, self.high, values)
-        )
-        # what is between two dots goes to the same one on every processor, whose sines differ in the last digit
-        return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
+        run = np.log10 if self.axis.log else np.asarray
+        low, high, value = run(self.low), run(self.high), run(values)
+        share = (value - low) / (high - low)
+        # what is between two dots goes to the same dot on every processor, whose sines differ in the last digit
+        return np.round(self.start + share * (self.end - self.start), 9)
 
 
 def axis_scale(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisScale:
@@ -95,44 +93,67 @@ def axis_scale(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisSc
 
     air: with free space around it; level: a level line is in the middle.
     """
-    every = np.concatenate(
-        [*map(np.ravel, drawn), [one for one in (axis.low, axis.high) if one is not None]]
-    )
-    low, high = (float(np.nanmin(every)), float(np.nanmax(every))) if len(every) else (0.0, 0.0)
+    bounds = [bound for bound in (axis.low, axis.high) if bound is not None]
+    values = np.concatenate([*map(np.ravel, drawn), bounds])
+    low, high = 0.0, 0.0
+    if len(values):
+        low, high = float(np.nanmin(values)), float(np.nanmax(values))
+
+    is_level = high - low <= _ROUNDING * max(abs(low), abs(high))
     if axis.log:
-        low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high) or 1)
-    elif level and high - low <= _ROUNDING * max(abs(low), abs(high)):
-        low, high = low - (0.1 * abs(low) or 1.0), high + (0.1 * abs(high) or 1.0)
+        # whole powers of ten
+        low = 10.0 ** math.floor(math.log10(low))
+        high = 10.0 ** math.ceil(math.log10(high) or 1)
+    elif level and is_level:
+        low -= 0.1 * abs(low) or 1.0
+        high += 0.1 * abs(high) or 1.0
     elif air:
-        below = 0.0 if low == axis.low else _AIR * (high - low)
-        low, high = low - below, high + _AIR * (high - low)
+        height = high - low
+        if low != axis.low:
+            low -= _AIR * height
+        high += _AIR * height
     return AxisScale(axis, high, low) if axis.falling else AxisScale(axis, low, high)
 
 
 def ticks(scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:
     """Return the ticks of an axis, at most so many or a few more: place and text, with the decimals that all need."""
-    axis, (low, high) = scale.axis, sorted((scale.low, scale.high))
+    axis = scale.axis
+    low, high = sorted((scale.low, scale.high))
     if axis.names:
         values = [float(number) for number in range(len(axis.names)) if low <= number <= high]
         texts = [axis.names[int(value)] for value in values]
     elif axis.log:
         powers = range(round(math.log10(low)), round(math.log10(high)) + 1)
-        values = [10.0**power for power in powers[:: max(1, -(-len(powers) // most))]]
+        stride = max(1, math.ceil(len(powers) / most))
+        values = [10.0**power for power in powers[::stride]]
         texts = [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
     else:
-        least = (high - low) / max(most, 1)
-        power = 10.0 ** math.floor(math.log10(least))
-        steps = [step for step in _DEGREES if step >= least > 10.0] if axis.unit == "deg" else []
-        step = (steps or [one * power for one in _STEPS if one * power >= least * (1 - 1e-9)])[0]
-        first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
-        values = [float(f"{number * step:.12g}") for number in range(first, last + 1)]
-        small = len(values) > 1 and values[-1] - values[0] < 1e-4
-        short = small or max(map(abs, values), default=0.0) >= 1e6
-        texts = [
-            look.fine(f"{value:.4g}" if short else cell(value, head_scale(values)))
-            for value in values
-        ]
+        values = _round_values(low, high, most, in_degrees=axis.unit == "deg")
+        texts = _texts_of_ticks(values, look)
     return [(float(scale.place(value)), text) for value, text in zip(values, texts)]
+
+
+def _round_values(low: float, high: float, most: int, in_degrees: bool) -> list[float]:
+    """Return the multiples of a round step between two values."""
+    least = (high - low) / max(most, 1)
+    power = 10.0 ** math.floor(math.log10(least))
+    steps = [step * power for step in _STEPS if step * power >= least * (1 - 1e-9)]
+    if in_degrees and least > 10.0:
+        steps = [step for step in _DEGREES if step >= least] or steps
+    step = steps[0]
+    first = math.ceil(low / step - 1e-9)
+    last = math.floor(high / step + 1e-9)
+    return [float(f"{number * step:.12g}") for number in range(first, last + 1)]
+
+
+def _texts_of_ticks(values: Sequence[float], look: Look) -> list[str]:
+    """Return values with the decimals that all need; with powers of ten if they are tiny or huge."""
+    are_tiny = len(values) > 1 and values[-1] - values[0] < 1e-4
+    are_huge = max(map(abs, values), default=0.0) >= 1e6
+    if are_tiny or are_huge:
+        return [look.fine(f"{value:.4g}") for value in values]
+    scale = head_scale(values)
+    return [look.fine(cell(value, scale)) for value in values]
 
 
 # a panel in its place
@@ -176,36 +197,60 @@ class PanelFrame:
     """
 
     def __init__(self, panel: Panel, look: Look, medium: Medium, wide: float, tall: float) -> None:
-        self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
+        self.panel = panel
+        self.look = look
+        self.medium = medium
+        self.wide = wide
+
+        # bodies leave no air around them
         across, up = panel.places
-        bare = not panel.bodies  # which leave no air around them
-        x = axis_scale(panel.x, across, bare and (panel.plain or panel.equal), not panel.equal)
-        y = axis_scale(panel.y, up, bare, not panel.equal)
+        is_bare = not panel.bodies
+        has_air_across = is_bare and (panel.plain or panel.equal)
+        x = axis_scale(panel.x, across, has_air_across, not panel.equal)
+        y = axis_scale(panel.y, up, is_bare, not panel.equal)
         if panel.equal:
-            sizes = np.array([x.high - x.low, y.high - y.low])
-            least = (
-                medium.shortest if panel.plain else min(0.8 * wide, 2 * medium.shortest)
-            )  # a flat curve has room
-            tall = min(max(wide * sizes[1] / sizes[0] if sizes[0] else 0.0, least), medium.tallest)
-            room = np.array([wide, tall])
-            spare = (max(*(sizes / room), _ROUNDING) * room - sizes) / 2
-            x, y = (
-                one._replace(low=one.low - more, high=one.high + more)
-                for one, more in zip((x, y), spare)
-            )
-        self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
-        names, between = panel.x.names, abs(self.points_per_unit)
-        numeric = all(name.replace(".", "", 1).isdecimal() for name in names)
-        if not numeric and any((width(name) + 1) * medium.letter > between for name in names):
-            # names that do not fit below the axis have numbers there, and follow it
-            key = ", ".join(
-                f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}")
-                for number, name in enumerate(names, 1)
-            )
-            numbers = tuple(str(number) for number, _ in enumerate(names, 1))
-            self.x = self.x._replace(axis=panel.x._replace(name=Words(key), names=numbers))
+            x, y, tall = self._with_equal_scales(x, y)
+        self.tall = tall
+        self.x = x._replace(end=wide)
+        self.y = y._replace(start=tall, end=0.0)
+        if self._names_overlap():
+            self._number_the_names()
         self.below = folded(axis_text(self.x.axis, look), int(wide / medium.letter))
         """What is written below the axis, line by line."""
+
+    def _with_equal_scales(self, x: AxisScale, y: AxisScale) -> tuple[AxisScale, AxisScale, float]:
+        """Return scales with the same length of a unit, and the height; a flat curve has room."""
+        medium = self.medium
+        sizes = np.array([x.high - x.low, y.high - y.low])
+        least = medium.shortest
+        if not self.panel.plain:
+            least = min(0.8 * self.wide, 2 * medium.shortest)
+        height = self.wide * sizes[1] / sizes[0] if sizes[0] else 0.0
+        tall = min(max(height, least), medium.tallest)
+
+        # what is smaller than its room gets the rest of it on both sides
+        room = np.array([self.wide, tall])
+        units_per_point = max(*(sizes / room), _ROUNDING)
+        margin_x, margin_y = (units_per_point * room - sizes) / 2
+        x = x._replace(low=x.low - margin_x, high=x.high + margin_x)
+        y = y._replace(low=y.low - margin_y, high=y.high + margin_y)
+        return x, y, tall
+
+    def _names_overlap(self) -> bool:
+        """Return whether names below the axis are wider than the space between them."""
+        names = self.panel.x.names
+        space = abs(self.points_per_unit)
+        are_numbers = all(name.replace(".", "", 1).isdecimal() for name in names)
+        are_wide = any((width(name) + 1) * self.medium.letter > space for name in names)
+        return are_wide and not are_numbers
+
+    def _number_the_names(self) -> None:
+        """Put numbers below the axis, and the names with their numbers in its title."""
+        axis = self.panel.x
+        numbers = tuple(str(number) for number in range(1, len(axis.names) + 1))
+        pairs = [f"{number} {name}" for number, name in zip(numbers, axis.names)]
+        key = ", ".join(pair.replace(" ", "\N{NO-BREAK SPACE}") for pair in pairs)
+        self.x = self.x._replace(axis=axis._replace(name=Words(key), names=numbers))
 
     @property
     def points_per_unit(self) -> float:
@@ -221,14 +266,17 @@ class PanelFrame:
 
         start, end: how far texts may reach.
         """
-        every, found = ticks(self.x, most, self.look), []
-        wide = [width(text) * self.medium.letter for _, text in every]
-        apart = min(np.abs(np.diff([place for place, _ in every])), default=math.inf)
-        of_each = max(math.ceil((max(wide, default=0.0) + self.medium.grain[0]) / apart), 1)
-        for number, (place, text) in enumerate(every):
-            left = max(min(place - wide[number] / 2, end - wide[number]), start)
-            found.append((place, left, "" if number % of_each else text))
-        return found
+        axis_ticks = ticks(self.x, most, self.look)
+        widths = [width(text) * self.medium.letter for _, text in axis_ticks]
+        space = min(np.abs(np.diff([x for x, _ in axis_ticks])), default=math.inf)
+        widest = max(widths, default=0.0) + self.medium.grain[0]
+        # every n-th has its text
+        stride = max(math.ceil(widest / space), 1)
+        placed = []
+        for number, ((x, text), wide) in enumerate(zip(axis_ticks, widths)):
+            left = max(min(x - wide / 2, end - wide), start)
+            placed.append((x, left, "" if number % stride else text))
+        return placed
 
     def labels(self, named: bool) -> list[Label]:
         """Return the labels of faint lines, marks and shades; named: of forces and of several curves, too.
@@ -236,13 +284,9 @@ class PanelFrame:
         Each is on the nearest ground that no other label has and no curve crosses; without room it is left out. Marks
         far from theirs have a line to it; mere angles, which come after them, are only where there is room nearby.
         """
-        panel, look, letter = self.panel.at_moment(0), self.look, self.medium.letter
+        panel = self.panel.at_moment(0)
         tracks = [self._track(curve) for curve in panel.curves]
-        around = np.add.outer([-1.0, 0.0, 1.0], [-1j, 0j, 1j]).ravel() * self.medium.dot
-        points = [(mark.x, mark.y) for mark in panel.marks]
-        points += [(one.x[0], one.y[0]) for one in panel.curves if one.kind == "pole"]
-        ground = self.medium.covering * self._cells(tracks)
-        ground += _TAKEN * self._cells([self.place(*point) + around for point in points])
+        ground = self._ground(panel, tracks)
         placed: list[Label | None] = []
 
         def label(
@@ -254,44 +298,94 @@ class PanelFrame:
         ) -> None:
             placed.append(self._on_free_ground(ground, text, complex(point), of, led, near))
 
-        symbols = [symbol(curve.name, look) for curve in panel.curves]
-        for curve, text in zip(panel.curves, symbols):
-            if text and (curve.kind == "faint" or (named and curve.kind in ("arrow", "force"))):
+        # faint lines, and forces, at their ends
+        for curve in panel.curves:
+            text = symbol(curve.name, self.look)
+            is_named_force = named and curve.kind in ("arrow", "force")
+            if text and (curve.kind == "faint" or is_named_force):
                 label(text, self.place(curve.x[-1], curve.y[-1]))
-        every = zip(panel.curves, symbols, looks_of(panel), (track[::4] for track in tracks))
-        lines = [one for one in every if one[1] and one[0].kind in ("line", "dots")]
-        for curve, text, number, own in lines if named and len(lines) > 1 else ():
-            others = np.concatenate([track for other, _, _, track in lines if other is not curve])
-            label(text, own[np.abs(own[:, None] - others).min(axis=1).round(6).argmax()], number)
-        figures = [mark for mark in panel.marks if mark.figure.name.symbol][:_MOST_MARKED]
-        for mark in (*figures, *(mark for mark in panel.marks if not mark.figure.name.symbol)):
-            led = bool(mark.figure.name.symbol)
-            label(figure_text(mark.figure, look), self.place(mark.x, mark.y), led=led, near=not led)
-        shades = [
-            (one, one.figure, figure_text(one.figure, look)) for one in panel.shades if one.figure
-        ]
-        # their names alone where not each figure has the room
-        roomy = all(width(text) * letter <= np.ptp(self.x.place(one.x)) for one, _, text in shades)
-        for shade, figure, text in shades:
+        # of several curves each where it is farthest from the others
+        if named:
+            for text, number, point in self._names_of_curves(panel, tracks):
+                label(text, point, number)
+
+        # figures of marks, then mere angles
+        with_symbol = [mark for mark in panel.marks if mark.figure.name.symbol][:_MOST_MARKED]
+        mere_angles = [mark for mark in panel.marks if not mark.figure.name.symbol]
+        for mark in with_symbol:
+            label(figure_text(mark.figure, self.look), self.place(mark.x, mark.y), led=True)
+        for mark in mere_angles:
+            label(figure_text(mark.figure, self.look), self.place(mark.x, mark.y), near=True)
+
+        for text, point in self._names_of_shades(panel):
+            label(text, point)
+        return [label for label in placed if label]
+
+    def _ground(self, panel: Panel, tracks: Sequence[ComplexArray]) -> Array:
+        """Return what it costs a label to cover each cell (rows, columns): curves, and more so points."""
+        points = [(mark.x, mark.y) for mark in panel.marks]
+        points += [(curve.x[0], curve.y[0]) for curve in panel.curves if curve.kind == "pole"]
+        around = np.add.outer([-1.0, 0.0, 1.0], [-1j, 0j, 1j]).ravel() * self.medium.dot
+        dots = [self.place(*point) + around for point in points]
+        return self.medium.covering * self._cells(tracks) + _TAKEN * self._cells(dots)
+
+    def _names_of_curves(
+        self, panel: Panel, tracks: Sequence[ComplexArray]
+    ) -> list[tuple[str, int, ComplexArray]]:
+        """Return name, number and place of each of several curves: where it is farthest from the others."""
+        lines = []
+        for curve, number, track in zip(panel.curves, looks_of(panel), tracks):
+            text = symbol(curve.name, self.look)
+            if text and curve.kind in ("line", "dots"):
+                lines.append((text, number, track[::4]))
+        if len(lines) < 2:
+            return []
+        names = []
+        for index, (text, number, track) in enumerate(lines):
+            others = np.concatenate([line[2] for line in lines[:index] + lines[index + 1 :]])
+            distances = np.abs(track[:, None] - others).min(axis=1).round(6)
+            names.append((text, number, track[distances.argmax()]))
+        return names
+
+    def _names_of_shades(self, panel: Panel) -> list[tuple[str, ComplexArray]]:
+        """Return the figures of areas, in their middles; their names alone where not each figure has the room."""
+        shades = [shade for shade in panel.shades if shade.figure]
+        texts = [figure_text(shade.figure, self.look) for shade in shades if shade.figure]
+        letter = self.medium.letter
+        have_room = all(
+            width(text) * letter <= np.ptp(self.x.place(shade.x))
+            for text, shade in zip(texts, shades)
+        )
+        if not have_room:
+            texts = [symbol(shade.figure.name, self.look) for shade in shades if shade.figure]
+        middles = []
+        for shade in shades:
             widest = int(np.argmax(np.abs(shade.high - shade.low)))
-            middle = self.place(shade.x[widest], (shade.high[widest] + shade.low[widest]) / 2)
-            label(text if roomy else symbol(figure.name, look), middle)
-        return [one for one in placed if one]
+            middle = (shade.high[widest] + shade.low[widest]) / 2
+            middles.append(self.place(shade.x[widest], middle))
+        return list(zip(texts, middles))
 
     def _track(self, curve: Curve) -> ComplexArray:
         """Return places along a curve, no farther apart than a quarter of a cell of the grid."""
-        wide, tall = (one / 4 for one in self.medium.grain)
+        wide = self.medium.grain[0] / 4
+        tall = self.medium.grain[1] / 4
         pieces = [self.place(*piece) for piece in (*curve.pieces(), *curve.jumps())]
-        lines = [dense(one.real / wide, one.imag / tall) for one in pieces]
-        return np.concatenate([x * wide + 1j * y * tall for x, y in lines])
+        lines = []
+        for piece in pieces:
+            x, y = dense(piece.real / wide, piece.imag / tall)
+            lines.append(x * wide + 1j * y * tall)
+        return np.concatenate(lines)
 
     def _cells(self, lines: Sequence[ComplexArray]) -> Array:
         """Return 1 for the cells (rows, columns) of the grid in which one of these places is, else 0."""
-        (wide, tall), dot = self.medium.grain, self.medium.dot
-        rows, columns = math.ceil((self.tall - dot) / tall), math.ceil((self.wide - dot) / wide)
-        places = np.concatenate([*lines, np.empty(0, dtype=complex)])
+        wide, tall = self.medium.grain
+        dot = self.medium.dot
+        rows = math.ceil((self.tall - dot) / tall)
+        columns = math.ceil((self.wide - dot) / wide)
+        points = np.concatenate([*lines, np.empty(0, dtype=complex)])
         bounds = (0.0, rows * tall), (0.0, columns * wide)
-        return np.sign(np.histogram2d(places.imag, places.real, (rows, columns), bounds)[0])
+        counts = np.histogram2d(points.imag, points.real, (rows, columns), bounds)[0]
+        return np.sign(counts)
 
     def _on_free_ground(
         self, ground: Array, text: str, point: complex, look: int | None, led: bool, near: bool
@@ -300,45 +394,56 @@ class PanelFrame:
 
         What it costs to be somewhere is the distance from its point, and what the ground that it covers costs.
         """
-        x, y, grain = point.real, point.imag, self.medium.grain
-        wide, tall = width(text) * self.medium.letter, self.medium.line
-        rows, columns = math.ceil(tall / grain[1]), math.ceil(wide / grain[0])
+        cell_width, cell_height = self.medium.grain
+        wide = width(text) * self.medium.letter
+        tall = self.medium.line
+        columns = math.ceil(wide / cell_width)
+        rows = math.ceil(tall / cell_height)
         if rows > ground.shape[0] or columns > ground.shape[1]:
             return None
+
+        # what a label covers at each place, by sums over all cells up to there
         sums = np.pad(ground.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
         strips = sums[rows:] - sums[:-rows]
         covered = strips[:, columns:] - strips[:, :-columns]
-        left, top = (
-            grain[0] * np.arange(covered.shape[1]),
-            grain[1] * np.arange(covered.shape[0])[:, None],
-        )
-        across, down = np.clip(x, left, left + wide) - x, np.clip(y, top, top + tall) - y
-        off_middle = np.abs(left + wide / 2 - x) + np.abs(top + tall / 2 - y)
+
+        # how far its edge, and its middle, are from the point
+        left = cell_width * np.arange(covered.shape[1])
+        top = cell_height * np.arange(covered.shape[0])[:, None]
+        across = np.clip(point.real, left, left + wide) - point.real
+        down = np.clip(point.imag, top, top + tall) - point.imag
+        off_middle = np.abs(left + wide / 2 - point.real) + np.abs(top + tall / 2 - point.imag)
         cost = (np.hypot(across, down) + 0.05 * off_middle + covered).round(6)
+
         row, column = np.unravel_index(cost.argmin(), cost.shape)
-        if cost[row, column] >= (2 * tall if near else _TAKEN):
+        most = 2 * tall if near else _TAKEN
+        if cost[row, column] >= most:
             return None
         ground[row : row + rows, max(column - 1, 0) : column + columns + 1] = _TAKEN
-        start, height = float(left[column]), float(top[row, 0])
+        start = float(left[column])
         end = point + complex(across[column], down[row, 0])
-        far = led and abs(end - point) > 1.2 * tall
-        return Label(text, point, look, start, start + wide, height, end if far else None)
+        is_far = abs(end - point) > 1.2 * tall
+        lead = end if led and is_far else None
+        return Label(text, point, look, start, start + wide, float(top[row, 0]), lead)
 
 
 def looks_of(panel: Panel) -> list[int]:
     """Return the number of the colour and stroke of each curve of a panel: lines take one after the other."""
-    found, following = [], 0
+    looks = []
+    next_look = 0
     for curve in panel.curves:
-        found.append((following if curve.look is None else curve.look) % LOOKS)
-        following += curve.kind in ("line", "dots")
-    return found
+        look = next_look if curve.look is None else curve.look
+        looks.append(look % LOOKS)
+        if curve.kind in ("line", "dots"):
+            next_look += 1
+    return looks
 
 
 def dense(x: Array, y: Array) -> tuple[Array, Array]:
     """Return points along a line x, y (n,), neither coordinate of neighbours more than 1 apart."""
-    steps = np.maximum(
-        np.ceil(np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y))) - 1e-6), 1
-    ).astype(int)
-    numbers, ends = np.arange(len(x)), np.append(0, steps.cumsum())
+    largest = np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y)))
+    steps = np.maximum(np.ceil(largest - 1e-6), 1).astype(int)
+    numbers = np.arange(len(x))
+    ends = np.append(0, steps.cumsum())
     along = np.interp(np.arange(ends[-1] + 1), ends, numbers)
     return np.interp(along, numbers, x), np.interp(along, numbers, y)

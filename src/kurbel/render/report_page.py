@@ -24,7 +24,7 @@ from kurbel.render.style import LONG_REPORT, MOVING, PAIRS, PICTURE, PICTURE_COL
 from kurbel.render.svg import svg
 from kurbel.render.text import DIGITS
 from kurbel.render.text_tables import TextColumn, TextTable, key_value_table, part_name, place_table
-from kurbel.tables.tables import PlaceTable
+from kurbel.tables.tables import PlaceTable, notes_for_people
 
 _CLOSE = 5
 """Digits of a value next to its bound."""
@@ -78,7 +78,7 @@ def _item(item: SectionItem, out: Html) -> Iterator[str]:
                 name = part_name(report, part, out.look) or "Key values"
                 yield from written([key_value_table(name, part.key_values, out.look)], out)
         yield from written(of_places(report, out), out)
-        yield from (f"<p>{out.prose(note)}</p>\n" for note in report.notes)
+        yield from (f"<p>{out.prose(note)}</p>\n" for note in notes_for_people(report))
     elif isinstance(item, OverAngle):
         yield f"<h3>{out.words(item.title)}</h3>\n"
         yield from written(over_angle(item.report, out), out)
@@ -101,7 +101,7 @@ def _fact(one: Fact, out: Html) -> str:
     """Return a key value as a tile: what it is, its value, its symbol with its place."""
     look = out.look
     value, unit = look.measured(one.value, one.unit, DIGITS)
-    at = "" if one.at_deg is None else f"at {look.degrees(one.at_deg)}"
+    at = "" if one.at_deg is None else f"at {look.extreme_at(one.at_deg, one.side)}"
     place = " ".join(filter(None, (look.text(one.where), at)))
     of = f" <small>{out.text(unit)}</small>" if unit else ""
     return (

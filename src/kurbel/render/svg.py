@@ -76,10 +76,9 @@ def poster_svg(panel: Panel, look: Look, wide: bool) -> str:
     """Return a panel alone, as it is on a sheet of paper, wide or tall, with fine lines and small texts."""
     room, tallest = _POSTER if wide else _POSTER[::-1]
     frame = PanelFrame(panel, look, PAPER_SIZES._replace(tallest=tallest), room, tallest)
+    items = "".join(_panel(frame, 0.0, True, ()))
     tall = frame.tall + 30.0 + 15.0 * len(_footnote(frame))
-    return _svg(
-        "".join(_panel(frame, 0.0, True, ())), room, tall, 6.0, panel.title, picture_css(paper=True)
-    )
+    return _svg(items, room, tall, 6.0, panel.title, picture_css(paper=True))
 
 
 def _svg(items: str, wide: float, tall: float, margin: float, title: str, style: str = "") -> str:
@@ -97,39 +96,58 @@ def _svg(items: str, wide: float, tall: float, margin: float, title: str, style:
 def _drawn(picture: Picture, look: Look, paper: bool, headed: bool = True) -> tuple[float, str]:
     """Return the height of a picture and its items; headed: with its heading."""
     heading = folded(look.text(picture.heading), int(WIDTH / _BOLD)) if headed else []
-    items = "".join(
-        _text((16 + 17 * number) * 1j, text, "h") for number, text in enumerate(heading)
-    )
-    below, last = 7.0 * headed + 17 * len(heading), len(picture.panels) - 1
-    top, tall = below, _TALL if len(picture.panels) < 3 else _SHORT
+    items = ""
+    for number, text in enumerate(heading):
+        items += _text((16 + 17 * number) * 1j, text, "h")
+    bottom = 17.0 * len(heading) + (7.0 if headed else 0.0)
+
+    # the panels, row by row
+    top = bottom
+    tall = _TALL if len(picture.panels) < 3 else _SHORT
+    column_width = (WIDTH + _GUTTER) / picture.across - _GUTTER
+    last = len(picture.panels) - 1
     for number, panel in enumerate(picture.panels):
         column = number % picture.across
-        # what is alone in the last row has all of it
-        each = (
-            WIDTH
-            if number == last and column == 0
-            else (WIDTH + _GUTTER) / picture.across - _GUTTER
-        )
-        if number and column == 0:
-            top = below + 4
-        left, right, above, under = (
-            (0.0, 0.0, 18.0, 8.0) if panel.plain else (48.0, 12.0, 20.0, 18.0)
-        )
-        frame = PanelFrame(panel, look, PAPER_SIZES, each - left - right, tall)
-        legend = [] if panel.plain else _legend(frame, left)
-        above += 14 * len(legend)
-        under += 12 * len(frame.below) + (
-            18.0 + 15.0 * len(_footnote(frame)) if panel.footnote else 0.0
-        )
-        corner = f"{column * (each + _GUTTER) + left:g} {top + above:g}"
-        items += f'<g transform="translate({corner})">\n{"".join(_panel(frame, left, paper, legend))}</g>\n'
-        below = max(below, top + above + frame.tall + under)
+        begins_a_row = column == 0
+        is_alone_in_its_row = begins_a_row and number == last
+        if begins_a_row and number:
+            top = bottom + 4
+        panel_width = WIDTH if is_alone_in_its_row else column_width
+        left = column * (column_width + _GUTTER)
+        panel_items, height = _placed(panel, look, paper, left, top, panel_width, tall)
+        items += panel_items
+        bottom = max(bottom, top + height)
+
+    # what the marks mean, four in a line
     for number, (name, mark) in enumerate(picture.legend):
-        place = complex(12 + number % 4 * (WIDTH - 12) / 4, below + 18 + number // 4 * 16)
-        items += _shape(f"c{mark % LOOKS}", _dot(place - 4j, mark)) + _text(
-            place + 9, symbol(name, look)
-        )
-    return below + 4 + (-(-len(picture.legend) // 4) * 16 + 8 if picture.legend else 0), items
+        line, place_in_line = divmod(number, 4)
+        place = complex(12 + place_in_line * (WIDTH - 12) / 4, bottom + 18 + 16 * line)
+        items += _shape(f"c{mark % LOOKS}", _dot(place - 4j, mark))
+        items += _text(place + 9, symbol(name, look))
+    height = bottom + 4
+    if picture.legend:
+        lines = math.ceil(len(picture.legend) / 4)
+        height += 16 * lines + 8
+    return height, items
+
+
+def _placed(
+    panel: Panel, look: Look, paper: bool, left: float, top: float, wide: float, tall: float
+) -> tuple[str, float]:
+    """Return a panel at its place in the picture, and the height that it takes with what is around it."""
+    room_left, room_right, room_above, room_below = 48.0, 12.0, 20.0, 18.0
+    if panel.plain:
+        room_left, room_right, room_above, room_below = 0.0, 0.0, 18.0, 8.0
+    frame = PanelFrame(panel, look, PAPER_SIZES, wide - room_left - room_right, tall)
+    legend = [] if panel.plain else _legend(frame, room_left)
+    room_above += 14 * len(legend)
+    room_below += 12 * len(frame.below)
+    if panel.footnote:
+        room_below += 18.0 + 15.0 * len(_footnote(frame))
+    corner = f"{left + room_left:g} {top + room_above:g}"
+    inner = "".join(_panel(frame, room_left, paper, legend))
+    items = f'<g transform="translate({corner})">\n{inner}</g>\n'
+    return items, room_above + frame.tall + room_below
 
 
 def _panel(
@@ -142,105 +160,138 @@ def _panel(
     panel, look = frame.panel, frame.look
     if not panel.plain:
         yield from _around(frame, left, legend)
+
+    # bars are all that there is to see; areas are behind their curves
+    gain_look, loss_look = ("p", "n") if panel.curves else ("c0", "c1")
     for shade in panel.shades:
-        low, high = (thinned(frame.place(shade.x, line)) for line in (shade.low, shade.high))
-        # bars are all that there is to see; areas are behind their curves
-        gain, loss = ("p", "n") if panel.curves else ("c0", "c1")
-        yield _shape(gain if shade.gain else loss, _path(np.append(low, high[::-1])) + "Z")
-    yield from (_body(frame, body, paper) for body in panel.bodies)
-    moving, resting = "", _text(-5j, look.text(panel.title), "note") if panel.plain else ""
+        low = thinned(frame.place(shade.x, shade.low))
+        high = thinned(frame.place(shade.x, shade.high))
+        shade_look = gain_look if shade.gain else loss_look
+        yield _shape(shade_look, _path(np.append(low, high[::-1])) + "Z")
+    for body in panel.bodies:
+        yield _body(frame, body, paper)
+
+    # curves, and forces, which alone move
+    moving = ""
+    resting = _text(-5j, look.text(panel.title), "note") if panel.plain else ""
     for curve, number in zip(panel.curves, looks_of(panel)):
-        if curve.x.ndim == 1 or paper:
+        is_at_rest = curve.x.ndim == 1 or paper
+        if is_at_rest:
             yield _curve(frame, curve.at_moment(0), number)
-        else:  # forces alone move
-            moving += _arrow(frame, [curve.at_moment(moment) for moment in range(len(curve.x))])
-            resting += _arrow(frame, [curve.at_moment(0)])
-    if moving or (not paper and any(body.moves for body in panel.bodies)):
+        else:
+            moments = [curve.at_moment(moment) for moment in range(len(curve.x))]
+            moving += _arrow(frame, moments)
+            resting += _arrow(frame, moments[:1])
+    bodies_move = not paper and any(body.moves for body in panel.bodies)
+    if moving or bodies_move:
         resting = f'<g class="moving">{moving}</g>\n<g class="still">{resting}</g>\n'
     yield resting
+
+    # marked points, with labels that keep clear of the upright axis
     labels = frame.labels(named=False)
-    yield from (
-        _shape("f", _path(np.array([one.point, one.lead])))
-        for one in labels
-        if one.lead is not None
-    )
-    yield from (
-        _shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6)) for mark in panel.marks
-    )
-    clear = -math.inf if panel.plain else _CLEAR  # of the axis
     for label in labels:
-        yield _text(complex(max(label.left, clear), label.top + 9.5), label.text, "halo")
+        if label.lead is not None:
+            yield _shape("f", _path(np.array([label.point, label.lead])))
+    for mark in panel.marks:
+        yield _shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6))
+    leftmost = -math.inf if panel.plain else _CLEAR
+    for label in labels:
+        yield _text(complex(max(label.left, leftmost), label.top + 9.5), label.text, "halo")
     for caption in panel.captions:
         place = complex(frame.place(caption.place.real, caption.place.imag)) + 4.5j
-        yield _text(
-            place,
-            look.text(caption.text),
-            "mark strong" if caption.strong else "mark note",
-            "middle",
-        )
+        caption_look = "mark strong" if caption.strong else "mark note"
+        yield _text(place, look.text(caption.text), caption_look, "middle")
     if panel.footnote:
         yield from _below(frame)
 
 
 def _body(frame: PanelFrame, body: Body, paper: bool) -> str:
     """Return shapes that move together, at rest and, unless on paper, also in motion."""
-    places, scale = frame.place(body.place.real, body.place.imag), frame.points_per_unit
-    # on the page y counts downward, so that angles turn the other way
-    turn, moved = -body.turn, places - places[0]
-    # what turns on and on ends a turn later
-    turned = turn[1] + 360.0 * round(float(turn[-1] - turn[1]) / 360.0) if len(turn) > 1 else 0.0
-    steps = (
-        ("scale", [f"{_number(one, 4)} 1" for one in body.stretch], "1 1", ""),
-        ("rotate", [_number(one, 2) for one in turn], "0", _number(turned, 2)),
-        # from where it rests, which has fewer digits
-        ("translate", [_both(one) for one in moved], "0 0", ""),
-    )
-    tints, shapes = (
-        [_number(one, 2) for one in body.tint],
-        "".join(_part(shape, scale) for shape in body.shapes),
-    )
-
-    def drawn(animated: bool) -> str:
-        found = shapes
-        for kind, texts, nothing, last in steps:
-            if set(texts if animated else texts[:1]) != {nothing}:
-                moves = (
-                    _animated(f'Transform attributeName="transform" type="{kind}"', texts, last)
-                    if animated
-                    else ""
-                )
-                found = f'<g transform="{kind}({texts[0]})">{moves}{found}</g>'
-        tint, fades = "", ""
-        if set(tints) != {"1"}:
-            tint, fades = (
-                f' opacity="{tints[0]}"',
-                _animated(' attributeName="opacity"', tints) if animated else "",
-            )
-        return f'<g transform="translate({_both(places[0])})"{tint}>{fades}{found}</g>\n'
-
+    resting = _body_at_rest(frame, body)
     if paper or not body.moves:
-        return drawn(False)
-    return f'<g class="moving">{drawn(True)}</g>\n<g class="still">{drawn(False)}</g>\n'
+        return resting
+    moving = _moving_body(frame, body)
+    return f'<g class="moving">{moving}</g>\n<g class="still">{resting}</g>\n'
+
+
+def _steps(frame: PanelFrame, body: Body) -> list[tuple[str, list[str], str, str]]:
+    """Return kind, values, the value that changes nothing, and the last value of each step of a movement."""
+    centres = frame.place(body.place.real, body.place.imag)
+    # the places from where it rests, which have fewer digits
+    displacements = centres - centres[0]
+    # on the page y counts downward, so that angles turn the other way
+    turn = -body.turn
+    # what turns on and on ends a turn later
+    last_turn = 0.0
+    if len(turn) > 1:
+        full_turns = round(float(turn[-1] - turn[1]) / 360.0)
+        last_turn = turn[1] + 360.0 * full_turns
+    return [
+        ("scale", [f"{_number(stretch, 4)} 1" for stretch in body.stretch], "1 1", ""),
+        ("rotate", [_number(angle, 2) for angle in turn], "0", _number(last_turn, 2)),
+        ("translate", [_both(displacement) for displacement in displacements], "0 0", ""),
+    ]
+
+
+def _shapes(frame: PanelFrame, body: Body) -> str:
+    return "".join(_part(shape, frame.points_per_unit) for shape in body.shapes)
+
+
+def _body_at_rest(frame: PanelFrame, body: Body) -> str:
+    items = _shapes(frame, body)
+    for kind, values, neutral, _ in _steps(frame, body):
+        if values[0] != neutral:
+            items = f'<g transform="{kind}({values[0]})">{items}</g>'
+    return _body_in_place(frame, body, items)
+
+
+def _moving_body(frame: PanelFrame, body: Body) -> str:
+    items = _shapes(frame, body)
+    for kind, values, neutral, last in _steps(frame, body):
+        if set(values) != {neutral}:
+            movement = f'Transform attributeName="transform" type="{kind}"'
+            animation = _animated(movement, values, last)
+            items = f'<g transform="{kind}({values[0]})">{animation}{items}</g>'
+    fading = _animated(' attributeName="opacity"', _tints(body)) if _is_tinted(body) else ""
+    return _body_in_place(frame, body, f"{fading}{items}")
+
+
+def _tints(body: Body) -> list[str]:
+    return [_number(tint, 2) for tint in body.tint]
+
+
+def _is_tinted(body: Body) -> bool:
+    return set(_tints(body)) != {"1"}
+
+
+def _body_in_place(frame: PanelFrame, body: Body, items: str) -> str:
+    centre = complex(frame.place(body.place.real, body.place.imag)[0])
+    opacity = f' opacity="{_tints(body)[0]}"' if _is_tinted(body) else ""
+    return f'<g transform="translate({_both(centre)})"{opacity}>{items}</g>\n'
 
 
 def _part(shape: Shape, scale: float) -> str:
-    points, radius = shape.points.conj() * scale, shape.radius * scale
+    points = shape.points.conj() * scale
+    radius = shape.radius * scale
     if radius:
         x, y = _both(points[0]).split()
         return f'<circle class="{shape.look}" cx="{x}" cy="{y}" r="{_number(radius)}"/>'
-    return f'<path class="{shape.look}" d="{_path(points)}{"z" if len(points) > 2 else ""}"/>'
+    closing = "z" if len(points) > 2 else ""
+    return f'<path class="{shape.look}" d="{_path(points)}{closing}"/>'
 
 
 def _below(frame: PanelFrame) -> Iterator[str]:
     """Yield a bar of a round length, and what of the picture is to scale."""
-    scale, top = frame.points_per_unit, frame.tall + 22.0
+    scale = frame.points_per_unit
+    top = frame.tall + 22.0
+
+    # the longest of 1, 2 and 5 of a power of ten that has room
     power = 10.0 ** math.floor(math.log10(_LONGEST_BAR / scale))
-    length = next(one * power for one in (5.0, 2.0, 1.0) if one * power * scale <= _LONGEST_BAR)
+    length = next(step * power for step in (5.0, 2.0, 1.0) if step * power * scale <= _LONGEST_BAR)
     end = length * scale
     yield _shape("thin", f"M0 {top - 3:g}v6m0-3h{end:.1f}m0-3v6")
-    yield _text(
-        complex(end + 7.0, top + 4.0), f"{length:g} {frame.look.unit(frame.panel.x.unit)}", "note"
-    )
+    unit = frame.look.unit(frame.panel.x.unit)
+    yield _text(complex(end + 7.0, top + 4.0), f"{length:g} {unit}", "note")
     for number, line in enumerate(_footnote(frame)):
         yield _text(complex(frame.wide, top + 4.0 + 15.0 * number), line, "note", "end")
 
@@ -253,54 +304,60 @@ def _footnote(frame: PanelFrame) -> list[str]:
 def _legend(frame: PanelFrame, left: float) -> list[LegendRow]:
     """Return what is above a panel: its title, what runs upward, and of several curves each with its stroke."""
     panel, look = frame.panel, frame.look
-    named = [
-        (curve, number)
-        for curve, number in zip(panel.curves, looks_of(panel))
-        if curve.kind == "line"
-    ]
     texts: list[tuple[str, int | None]] = [
         (look.text(panel.title), None),
         (axis_text(panel.y, look), None),
     ]
-    texts += (
-        [(legend_text(curve.name, look), number) for curve, number in named]
-        if len(named) > 1
-        else []
-    )
-    rows, at = list[LegendRow](), math.inf
+    lines = [pair for pair in zip(panel.curves, looks_of(panel)) if pair[0].kind == "line"]
+    if len(lines) > 1:
+        texts += [(legend_text(curve.name, look), number) for curve, number in lines]
+
+    # as many in a row as fit
+    rows: list[LegendRow] = []
+    start = math.inf
     for text, number in texts:
-        wide = PAPER_SIZES.letter * width(text) + (0 if number is None else 30)
-        if text and at + wide > frame.wide + 12:
+        if not text:
+            continue
+        stroke_width = 0 if number is None else 30
+        text_width = PAPER_SIZES.letter * width(text) + stroke_width
+        if start + text_width > frame.wide + 12:
             rows.append([])
-            at = -left
-        if text:
-            rows[-1].append((text, at, number))
-            at += wide + 18
+            start = -left
+        rows[-1].append((text, start, number))
+        start += text_width + 18
     return rows
 
 
 def _around(frame: PanelFrame, left: float, legend: Sequence[LegendRow]) -> Iterator[str]:
     """Yield thin lines with their values, what runs along the axes, and above which stroke is which quantity."""
     wide, tall = frame.wide, frame.tall
+
+    # thin lines, and the axes
     across = frame.ticks_across(max(3, int(wide / 64)), -left, wide + 8)
     up = ticks(frame.y, int(tall / 30), frame.look)
-    lines = [_path(np.array([place, place + 1j * tall])) for place, _, _ in across]
-    lines += [_path(np.array([1j * place, wide + 1j * place])) for place, _ in up]
-    yield _shape("g", "".join(lines)) + _shape(
-        "x", _path(np.array([0.0, 1j * tall, wide + 1j * tall]))
-    )
-    yield from (_text(complex(start, tall + 14), text) for _, start, text in across if text)
-    yield from (_text(complex(-6, place + 3.5), text, anchor="end") for place, text in up)
-    yield from (
-        _text(complex(wide, tall + 27 + 12 * k), text, anchor="end")
-        for k, text in enumerate(frame.below)
-    )
-    for k, row in enumerate(reversed(legend)):
-        base = -1j * (10 + 14 * k)
-        for text, at, number in row:
-            if number is not None:
-                yield _shape(f"k{number}", _path(np.array([at, at + 26]) + base - 4j))
-            yield _text(at + base + (0 if number is None else 30), text)
+    lines = [_path(np.array([x, x + 1j * tall])) for x, _, _ in across]
+    lines += [_path(np.array([1j * y, wide + 1j * y])) for y, _ in up]
+    yield _shape("g", "".join(lines))
+    yield _shape("x", _path(np.array([0.0, 1j * tall, wide + 1j * tall])))
+
+    # their values, and the name of what runs across
+    for _, start, text in across:
+        if text:
+            yield _text(complex(start, tall + 14), text)
+    for y, text in up:
+        yield _text(complex(-6, y + 3.5), text, anchor="end")
+    for line_number, text in enumerate(frame.below):
+        yield _text(complex(wide, tall + 27 + 12 * line_number), text, anchor="end")
+
+    # the legend, its last row next to the panel
+    for row_number, row in enumerate(reversed(legend)):
+        base = -1j * (10 + 14 * row_number)
+        for text, start, number in row:
+            if number is None:
+                yield _text(start + base, text)
+            else:
+                yield _shape(f"k{number}", _path(np.array([start, start + 26]) + base - 4j))
+                yield _text(start + base + 30, text)
 
 
 def _curve(frame: PanelFrame, curve: Curve, number: int) -> str:
@@ -311,53 +368,77 @@ def _curve(frame: PanelFrame, curve: Curve, number: int) -> str:
     if curve.kind in _POINTS:
         look, radius = _POINTS[curve.kind]
         return _shape(look, "".join(_dot(point, 0, radius) for point in pieces[0]))
+
     lines = "".join(_path(thinned(piece)) for piece in pieces)
     if curve.kind == "line":
         jumps = "".join(_path(frame.place(*jump)) for jump in curve.jumps())
-        return _shape(f"k{number}", lines) + (_shape(f"j{number}", jumps) if jumps else "")
+        jump_shape = _shape(f"j{number}", jumps) if jumps else ""
+        return _shape(f"k{number}", lines) + jump_shape
     if curve.kind == "dots":
         figure = number if curve.look is None else curve.look
-        dots = "".join(_dot(point, figure) for piece in pieces for point in piece)
+        dots = ""
+        for piece in pieces:
+            dots += "".join(_dot(point, figure) for point in piece)
         return _shape(f"j{number}", lines) + _shape(f"c{number}", dots)
     return _shape({"member": "m", "block": "b"}.get(curve.kind, "f"), lines)
 
 
 def _arrow(frame: PanelFrame, moments: Sequence[Curve]) -> str:
     """Return an arrow with its name, through all moments of its movement, or at its only one."""
-    force, paths, names = moments[0].kind == "force", list[str](), list[complex]()
+    is_force = moments[0].kind == "force"
+    paths: list[str] = []
+    name_places: list[complex] = []
     for curve in moments:
         tail, tip = frame.place(curve.x, curve.y).tolist()
         length = abs(tip - tail)
         if len(moments) == 1 and length < _SHORTEST:
             return ""
         along = (tip - tail) / length if length else 0.0
-        neck, half = tip - min(9.0, length) * along, np.array([0.8, 0.8, 3.6]) * 1j * along
-        side = np.array([tail, neck, neck])
-        paths.append(_path(np.array([*(side + half), tip, *(side - half)[::-1]])) + "Z")
+
+        # half of the outline, from the tail to the barb; the other half is its mirror image
+        neck = tip - min(9.0, length) * along
+        half_widths = np.array([0.8, 0.8, 3.6]) * 1j * along
+        middle_line = np.array([tail, neck, neck])
+        outline = [*(middle_line + half_widths), tip, *(middle_line - half_widths)[::-1]]
+        paths.append(_path(np.array(outline)) + "Z")
+
         # a force is named at its end away from the shaft, where nothing else is
-        inward = force and np.hypot(curve.x[0], curve.y[0]) > np.hypot(curve.x[1], curve.y[1])
-        names.append((tail - _NAMED * along if inward else tip + _NAMED * along) + 3.5j)
-    name, look = symbol(moments[0].name, frame.look), "halo force" if force else "halo"
-    return _shape("c0" if force else "c1", *paths) + _text(names[0], name, look, "middle", names)
+        points_inward = np.hypot(curve.x[0], curve.y[0]) > np.hypot(curve.x[1], curve.y[1])
+        if is_force and points_inward:
+            name_places.append(tail - _NAMED * along + 3.5j)
+        else:
+            name_places.append(tip + _NAMED * along + 3.5j)
+    name = symbol(moments[0].name, frame.look)
+    arrow_look = "c0" if is_force else "c1"
+    name_look = "halo force" if is_force else "halo"
+    arrow = _shape(arrow_look, *paths)
+    return arrow + _text(name_places[0], name, name_look, "middle", name_places)
 
 
 def thinned(places: ComplexArray) -> ComplexArray:
     """Return places x + iy (n,) without those that are on a straight line between their neighbours."""
-    for parity in (0, 1) * 6:  # of neighbours every other one
+    # of neighbours every other one, the odd and the even ones in turn
+    for parity in (0, 1) * 6:
         if len(places) < 3:
             break
-        off, chord = places[1:-1] - places[:-2], places[2:] - places[:-2]
-        share = np.clip((off * chord.conj()).real / np.maximum(np.abs(chord) ** 2, 1e-12), 0.0, 1.0)
-        kept = np.abs(off - share * chord) > _STRAIGHT
-        kept[parity::2] = True
-        places = places[np.concatenate(([True], kept, [True]))]
+        offset = places[1:-1] - places[:-2]
+        chord = places[2:] - places[:-2]
+        share = (offset * chord.conj()).real / np.maximum(np.abs(chord) ** 2, 1e-12)
+        distance = np.abs(offset - np.clip(share, 0.0, 1.0) * chord)
+        stays = distance > _STRAIGHT
+        stays[parity::2] = True
+        places = places[np.concatenate(([True], stays, [True]))]
     return places
 
 
 def _path(places: ComplexArray) -> str:
     rounded = np.round(places, 1)
-    steps = (np.round(np.diff(rounded), 1) + 0.0).tolist()  # a call for each point would take long
-    return f"M{_both(rounded[0])}{'l' if steps else ''}{' '.join([f'{step.real:g} {step.imag:g}' for step in steps])}"
+    # one call for all steps: one for each point would take long
+    steps = (np.round(np.diff(rounded), 1) + 0.0).tolist()
+    start = f"M{_both(rounded[0])}"
+    if not steps:
+        return start
+    return f"{start}l{' '.join([f'{step.real:g} {step.imag:g}' for step in steps])}"
 
 
 def _dot(middle: complex, figure: int, radius: float = 2.4) -> str:
@@ -366,14 +447,17 @@ def _dot(middle: complex, figure: int, radius: float = 2.4) -> str:
     if corners:
         around = np.exp(1j * np.radians(turn + 360.0 / corners * np.arange(corners)))
         return _path(middle + 1.4 * radius * around) + "Z"
-    r, across = f"{radius:g}", f"{2 * radius:g}"
-    return f"M{_both(middle - radius)}a{r} {r} 0 1 0 {across} 0a{r} {r} 0 1 0-{across} 0Z"
+    r = f"{radius:g}"
+    diameter = f"{2 * radius:g}"
+    start = _both(middle - radius)
+    return f"M{start}a{r} {r} 0 1 0 {diameter} 0a{r} {r} 0 1 0-{diameter} 0Z"
 
 
 def _shape(look: str, *paths: str) -> str:
     """Return a path, the first one at rest, or at all of which it is in turn."""
-    moves = _animated(' attributeName="d"', paths)
-    return f'<path class="{look}" d="{paths[0]}"{f">{moves}</path>" if moves else "/>"}\n'
+    animation = _animated(' attributeName="d"', paths)
+    end = f">{animation}</path>" if animation else "/>"
+    return f'<path class="{look}" d="{paths[0]}"{end}\n'
 
 
 def _text(
@@ -382,15 +466,18 @@ def _text(
     """Return a text with its subscripts; loop: the places through which it moves."""
     first, *following = subscripts(text)
     words = escape(first)
-    for below, rest in zip(following[::2], following[1::2]):
-        words += f'<tspan dy="2" font-size="80%">{escape(below)}</tspan>'
-        words += f'<tspan dy="-2">{escape(rest)}</tspan>' if rest else ""
-    moves = _animated(' attributeName="x"', [_number(one.real) for one in loop])
-    moves += _animated(' attributeName="y"', [_number(one.imag) for one in loop])
-    attributes = (f' class="{look}"' if look else "") + (
-        f' text-anchor="{anchor}"' if anchor else ""
-    )
-    return f'<text{attributes} x="{_number(place.real)}" y="{_number(place.imag)}">{words}{moves}</text>\n'
+    for subscript, rest in zip(following[::2], following[1::2]):
+        words += f'<tspan dy="2" font-size="80%">{escape(subscript)}</tspan>'
+        if rest:
+            words += f'<tspan dy="-2">{escape(rest)}</tspan>'
+
+    animation = _animated(' attributeName="x"', [_number(point.real) for point in loop])
+    animation += _animated(' attributeName="y"', [_number(point.imag) for point in loop])
+    attributes = f' class="{look}"' if look else ""
+    if anchor:
+        attributes += f' text-anchor="{anchor}"'
+    attributes += f' x="{_number(place.real)}" y="{_number(place.imag)}"'
+    return f"<text{attributes}>{words}{animation}</text>\n"
 
 
 def _animated(what: str, values: Sequence[str], last: str = "") -> str:
@@ -398,7 +485,8 @@ def _animated(what: str, values: Sequence[str], last: str = "") -> str:
     loop = values[1:]
     if len(set(loop)) < 2:
         return ""
-    around, seconds = ";".join((*loop, last or loop[0])), len(loop) / MOMENTS_PER_TURN * _SECONDS
+    around = ";".join((*loop, last or loop[0]))
+    seconds = len(loop) / MOMENTS_PER_TURN * _SECONDS
     return f'<animate{what} dur="{seconds:g}s" repeatCount="indefinite" values="{around}"/>'
 
 

@@ -13,15 +13,16 @@ import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain, islice, zip_longest
-from typing import BinaryIO, NamedTuple, NoReturn
+from typing import Any, BinaryIO, NamedTuple, NoReturn
 
 import numpy as np
 
 import kurbel
+from kurbel.arrays import Array
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.designs.answers import Cell, Design
 from kurbel.designs.chosen import RowCondition, Unit
-from kurbel.designs.find import Solutions
+from kurbel.designs.find import Solution, Solutions, Target
 from kurbel.designs.sweep import Sweep, computed_rows
 from kurbel.errors import UsageError
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
@@ -46,6 +47,8 @@ _WORD = re.compile(r'[^,;\s"{}\[\]]+')
 """The number of a row at the beginning of its line, and the names, numbers and words in it, in csv and in json."""
 _SAME = 1e-9
 """By how much two processors may differ in a number, relatively and in SI: they round otherwise, in the same sweep."""
+_JSON_OF_WORDS = {"": None, "yes": True, "no": False}
+"""What JSON has for the words of the last columns."""
 
 
 class Titles(NamedTuple):
@@ -60,10 +63,12 @@ class Titles(NamedTuple):
     types: Sequence[str] = ()
 
     @property
-    def whole(self) -> list[str]:
+    def heads(self) -> list[str]:
         """All heads with their units, as in csv: `row`, `T_max_N`, …, `keeps`, `broken`, `failure`."""
-        heads = [f"{name}_{unit.replace(' ', '')}" if unit else name for name, unit in self.names]
-        return [self.row, *heads, *self.last]
+        heads = [self.row]
+        for name, unit in self.names:
+            heads.append(f"{name}_{unit.replace(' ', '')}" if unit else name)
+        return [*heads, *self.last]
 
     def values(self, row: Design) -> list[Cell]:
         """Return the values of a row under the heads."""
@@ -77,14 +82,14 @@ def head_and_row_lines(titles: Titles, look: Look) -> tuple[str, Callable[[Desig
     """Return the line of the heads, and what makes the line of a row, in csv or as JSON."""
     if look.format == "csv":
         csv_row = csv_line(look)
-        head = csv_row([csv_cell(name, look) for name in titles.whole])
+        head = csv_row([csv_cell(name, look) for name in titles.heads])
         return head, lambda row: csv_row([csv_cell(value, look) for value in titles.values(row)])
 
     def json_row(row: Design) -> str:
-        said = {"": None, "yes": True, "no": False}
-        found = dict(zip(titles.whole, titles.values(row)))
-        found |= {name: said.get(text, text) for name, text in zip(titles.last, row.texts)}
-        return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
+        cells: dict[str, object] = dict(zip(titles.heads, titles.values(row)))
+        for head, text in zip(titles.last, row.texts):
+            cells[head] = _JSON_OF_WORDS.get(text, text)
+        return json.dumps(cells, allow_nan=False, ensure_ascii=False) + "\n"
 
     return "", json_row
 
@@ -92,18 +97,18 @@ def head_and_row_lines(titles: Titles, look: Look) -> tuple[str, Callable[[Desig
 def _for_people(titles: Titles, look: Look, rows: Sequence[Design]) -> Iterator[str]:
     """Return rows as a table of text or of Markdown."""
     heads = [(titles.row, ""), *titles.names, *((name, "") for name in titles.last)]
-    cells = [[_cell(value, look) for value in titles.values(row)] for row in rows]
-    columns = [
-        TextColumn(
-            look.text(name),
-            look.unit(unit),
-            [row[k] for row in cells],
-            "name" if name in titles.last else "number",
-        )
-        for k, (name, unit) in enumerate(heads)
-    ]
+    cells_of_columns: list[list[str]] = [[] for _ in heads]
+    for row in rows:
+        for column_cells, value in zip(cells_of_columns, titles.values(row)):
+            column_cells.append(_cell(value, look))
+
+    columns = []
+    for (name, unit), column_cells in zip(heads, cells_of_columns):
+        role = "name" if name in titles.last else "number"
+        columns.append(TextColumn(look.text(name), look.unit(unit), column_cells, role))
     if look.format == "markdown":
-        return iter(["".join(written([TextTable("", columns, 1)], Markdown(look))).lstrip("\n")])
+        markdown = "".join(written([TextTable("", columns, 1)], Markdown(look)))
+        return iter([markdown.lstrip("\n")])
     return plain_lines(blocks(columns[:1], columns[1:], look))
 
 
@@ -112,7 +117,7 @@ def _cell(value: Cell, look: Look) -> str:
     if isinstance(value, str):
         return look.unit(value) if isinstance(value, Unit) else look.text(value)
     if isinstance(value, tuple):
-        return " ".join(_cell(one, look) for one in value)
+        return " ".join(_cell(number, look) for number in value)
     if value is None:
         return ""
     text, power = single(value, look.digits)
@@ -122,11 +127,14 @@ def _cell(value: Cell, look: Look) -> str:
 # where they go
 
 
-class Kept(NamedTuple):
+class WrittenRows(NamedTuple):
     """Rows that a file has already, and the bytes of their lines, which stay."""
 
     rows: int = 0
     size: int = 0
+
+
+NOTHING_WRITTEN = WrittenRows()
 
 
 def write_rows(
@@ -136,46 +144,55 @@ def write_rows(
     file_name: str | None,
     early: Callable[[str], None],
     headed: bool = True,
-    kept: Kept = Kept(),  # noqa: B008 (immutable)
+    written_before: WrittenRows = NOTHING_WRITTEN,
 ) -> None:
     """Write the rows; a reader that leaves early is no fault. Raises UsageError.
 
     headed: csv with its head; early: gets a sentence about what an early end leaves.
     """
-    to_file = file_name is not None and file_name != "-"
     look = look_at(file_name, look)
     if look.format in ("table", "markdown"):
         write_out(_for_people(titles, look, list(rows)), file_name, look.encoding)
         return
-    count = kept.rows
+
+    # a row counts as written when the next one is wanted
+    count = written_before.rows
 
     def counted() -> Iterator[Design]:
         nonlocal count
         for row in rows:
             yield row
-            count += 1  # it is written when the next one is wanted
+            count += 1
 
-    following = counted()
+    counted_rows = counted()
     try:
-        first = list(
-            islice(following, 1)
-        )  # before anything is opened: there may be none, for whatever reason
-        with opened(file_name, resumed=kept.size) as file:
+        # the first row before anything is opened: there may be none, for whatever reason
+        first_row = list(islice(counted_rows, 1))
+        all_rows = chain(first_row, counted_rows)
+        with opened(file_name, resumed=written_before.size) as file:
             if look.format == "parquet":
-                _write_parquet(file, titles, chain(first, following))
+                _write_parquet(file, titles, all_rows)
             else:
-                heads, line = head_and_row_lines(titles, look)
-                texts = chain([heads] if headed else [], map(line, chain(first, following)))
-                _write_lines(file, texts, look.encoding)
+                head_line, row_line = head_and_row_lines(titles, look)
+                heads = [head_line] if headed else []
+                _write_lines(file, chain(heads, map(row_line, all_rows)), look.encoding)
     except BaseException:
-        some = f"{count} row{'s' * (count > 1)}"
-        if count and not to_file:
-            early(f"{some} written")
-        elif (
-            count and look.format != "parquet" and os.path.isfile(part := _part_of(str(file_name)))
-        ):
-            early(f"{part} holds {some}")
+        if count:
+            _report_what_is_left(count, file_name, look, early)
         raise
+
+
+def _report_what_is_left(
+    count: int, file_name: str | None, look: Look, early: Callable[[str], None]
+) -> None:
+    """Say how many rows an early end leaves, and where."""
+    rows = "1 row" if count == 1 else f"{count} rows"
+    if file_name is None or file_name == "-":
+        early(f"{rows} written")
+        return
+    part = _part_of(file_name)
+    if look.format != "parquet" and os.path.isfile(part):
+        early(f"{part} holds {rows}")
 
 
 def _part_of(file_name: str) -> str:
@@ -184,7 +201,8 @@ def _part_of(file_name: str) -> str:
 
 def _write_lines(file: BinaryIO, lines: Iterable[str], encoding: str) -> None:
     """Write lines, the first ones at once, and those that are ready whenever some time has passed."""
-    encoder = codecs.getincrementalencoder(encoding)("replace")  # one byte order mark at most
+    # an incremental encoder writes one byte order mark at most
+    encoder = codecs.getincrementalencoder(encoding)("replace")
     due = 0.0
     for line in lines:
         file.write(encoder.encode(line))
@@ -199,105 +217,155 @@ def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design]) -> No
         import pyarrow.parquet
     except ImportError:
         raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
-    stored = {
+    stored_types = {
         "number": pyarrow.float64(),
         "text": pyarrow.string(),
         "list": pyarrow.list_(pyarrow.float64()),
     }
-    types = [
-        pyarrow.int64(),
-        *(stored[one] for one in (*titles.types, *("text" for _ in titles.last))),
-    ]
-    schema = pyarrow.schema(zip(titles.whole, types))
+    types = [pyarrow.int64()]
+    types += [stored_types[type] for type in titles.types]
+    types += [pyarrow.string() for _ in titles.last]
+    schema = pyarrow.schema(zip(titles.heads, types))
     with pyarrow.parquet.ParquetWriter(file, schema) as writer:
         while group := list(islice(rows, _IN_A_GROUP)):
-            arrays = []
-            for type, column in zip(types, zip(*map(titles.values, group))):
-                if type == "string":  # of words some may be read as numbers
-                    column = tuple(None if one is None else str(one) for one in column)
-                arrays.append(pyarrow.array(column, type))
+            columns = zip(*map(titles.values, group))
+            arrays = [_parquet_array(column, type) for column, type in zip(columns, types)]
             writer.write_table(pyarrow.table(arrays, schema=schema))
+
+
+def _parquet_array(column: tuple[Cell, ...], type: Any) -> Any:
+    """Return a column as an array of Parquet; of a column of words some may be read as numbers."""
+    import pyarrow
+
+    cells: list[Any] = list(column)
+    if type == "string":
+        cells = [None if cell is None else str(cell) for cell in column]
+    return pyarrow.array(cells, type)
 
 
 # the rows that an interrupted sweep left
 
 
-def kept_rows(
+def rows_written_before(
     file_name: str,
     sweep: Sweep,
     titles: Titles,
     look: Look,
     rows: range,
     conditions: Sequence[RowCondition],
-) -> tuple[Kept, range]:
+) -> tuple[WrittenRows, range]:
     """Return what a file, or the part of it that an early end left, has of these rows, and those still to be computed.
 
     Raises UsageError for a file that begins otherwise, or that has rows that this sweep has not, or with other inputs
     or other answers: the inputs of each row are compared, and the answers of the last one.
     """
-    path = part if os.path.isfile(part := _part_of(file_name)) else file_name
-    if not os.path.isfile(path):  # a device or a pipe, which may have no end, keeps nothing
-        return Kept(), rows
-    heads, line_of = head_and_row_lines(titles, look)
-    head = heads.encode() if rows.start == 0 else b""
-    begin_of = head_and_row_lines(
-        Titles(titles.names[: len(sweep.plan.inputs)], row=titles.row), look
-    )[1]
+    part = _part_of(file_name)
+    path = part if os.path.isfile(part) else file_name
+    # a device or a pipe, which may have no end, keeps nothing
+    if not os.path.isfile(path):
+        return NOTHING_WRITTEN, rows
 
-    def refuse(why: str) -> NoReturn:
+    begun = _BegunFile(path, sweep, titles, look, rows, gaps_allowed=bool(conditions))
+    try:
+        begun.read()
+    except OSError as error:
+        raise UsageError(f"cannot read {path}: {error.strerror}") from None
+    if begun.last_line:
+        begun.compare_answers(conditions)
+    return WrittenRows(begun.count, begun.size), rows[begun.next_row - rows.start :]
+
+
+class _BegunFile:
+    """A file of rows that an early end left: what it has, line by line, compared with the sweep.
+
+    count, size: of its whole lines, rows and bytes; next_row: the first that it has not; gaps_allowed: rows may be
+    missing in it, as --where leaves some out.
+    """
+
+    def __init__(
+        self, path: str, sweep: Sweep, titles: Titles, look: Look, rows: range, gaps_allowed: bool
+    ) -> None:
+        self.path = path
+        self.sweep = sweep
+        self.rows = rows
+        self.gaps_allowed = gaps_allowed
+        self.head_line, self.row_line = head_and_row_lines(titles, look)
+        input_names = titles.names[: len(sweep.plan.inputs)]
+        self.inputs_line = head_and_row_lines(Titles(input_names, row=titles.row), look)[1]
+        self.count = 0
+        self.size = 0
+        self.next_row = rows.start
+        self.last_line = b""
+
+    def read(self) -> None:
+        """Read the whole lines, and compare the inputs of their rows."""
+        with open(self.path, "rb") as file:
+            self._read_head(file)
+            while True:
+                lines = [line for line in islice(file, _COMPARED_AT_ONCE) if line.endswith(b"\n")]
+                if not lines:
+                    return
+                self._compare_inputs(lines)
+                self.count += len(lines)
+                self.size += sum(map(len, lines))
+                self.last_line = lines[-1]
+
+    def _read_head(self, file: BinaryIO) -> None:
+        """Leave the file at its first row; the file of a shard begins with a row, not with the heads."""
+        head = self.head_line.encode() if self.rows.start == 0 else b""
+        first_line = next(file, b"")
+        if head:
+            begins_alike = head.startswith(first_line)
+        else:
+            begins_alike = bool(_NUMBER.match(first_line)) or b'{"row": '.startswith(first_line)
+        if not begins_alike:
+            self._refuse(f"it begins with {_excerpt(first_line)}")
+        self.size = len(head) if first_line == head else 0
+        file.seek(self.size)
+
+    def _compare_inputs(self, lines: list[bytes]) -> None:
+        row_numbers = [self._row_number(line) for line in lines]
+        for row, line, inputs in zip(row_numbers, lines, self.sweep.inputs(row_numbers)):
+            words_now = _WORD.findall(self.inputs_line(Design(row + 1, inputs)))
+            self._compare(row + 1, _words(line)[: len(words_now)], words_now)
+
+    def _row_number(self, line: bytes) -> int:
+        """Return the row of a line, counted from 0, which must follow the one before it."""
+        number = _NUMBER.match(line)
+        if not number:
+            self._refuse(f"it has a line {_excerpt(line)}")
+        row = int(number[1]) - 1
+        if row not in self.rows:
+            span = f"{self.rows.start + 1} to {self.rows.stop}"
+            self._refuse(f"it has row {row + 1}, these are rows {span}")
+        is_missing = row != self.next_row and not self.gaps_allowed
+        if row < self.next_row or is_missing:
+            self._refuse(f"row {self.next_row + 1} is missing in it")
+        self.next_row = row + 1
+        return row
+
+    def compare_answers(self, conditions: Sequence[RowCondition]) -> None:
+        """Compute the last row anew, and compare all that its line has."""
+        last_row = range(self.next_row - 1, self.next_row)
+        computed = next(computed_rows(self.sweep, last_row))
+        words_now = _WORD.findall(self.row_line(computed))
+        self._compare(self.next_row, _words(self.last_line), words_now)
+        if not all(condition.holds(computed) for condition in conditions):
+            self._refuse(f"row {self.next_row} is in it, which --where leaves out")
+
+    def _compare(self, row: int, words_there: list[str], words_now: list[str]) -> None:
+        for word_there, word_now in zip_longest(words_there, words_now, fillvalue="nothing"):
+            if not _are_equal(word_there, word_now):
+                self._refuse(f"row {row} has {word_there} in it, and {word_now} now")
+
+    def _refuse(self, why: str) -> NoReturn:
         raise UsageError(
-            f"--resume: {path} is not of this sweep: {why}; "
+            f"--resume: {self.path} is not of this sweep: {why}; "
             "give the same machine and options, name another file, or leave --resume out to begin anew"
         )
 
-    def compare(row: int, there: list[str], here: list[str]) -> None:
-        for one, other in zip_longest(there, here, fillvalue="nothing"):
-            if not _same(one, other):
-                refuse(f"row {row} has {one} in it, and {other} now")
 
-    count, following, last = 0, rows.start, b""
-    try:
-        with open(path, "rb") as file:
-            begin = next(file, b"")
-            if not (
-                head.startswith(begin)
-                if head
-                else _NUMBER.match(begin) or b'{"row": '.startswith(begin)
-            ):
-                refuse(f"it begins with {_shown(begin)}")
-            size = len(head) if begin == head else 0
-            file.seek(size)
-            while lines := [
-                line for line in islice(file, _COMPARED_AT_ONCE) if line.endswith(b"\n")
-            ]:
-                numbers = []
-                for line in lines:
-                    number = _NUMBER.match(line) or refuse(f"it has a line {_shown(line)}")
-                    row = int(number[1]) - 1
-                    if row not in rows:
-                        refuse(
-                            f"it has row {row + 1}, these are rows {rows.start + 1} to {rows.stop}"
-                        )
-                    if row < following or (not conditions and row != following):
-                        refuse(f"row {following + 1} is missing in it")
-                    numbers.append(row)
-                    following = row + 1
-                for row, line, inputs in zip(numbers, lines, sweep.inputs(numbers)):
-                    here = _WORD.findall(begin_of(Design(row + 1, inputs)))
-                    compare(row + 1, _words(line)[: len(here)], here)
-                count, size, last = count + len(lines), size + sum(map(len, lines)), lines[-1]
-    except OSError as error:
-        raise UsageError(f"cannot read {path}: {error.strerror}") from None
-
-    if last:
-        computed = next(computed_rows(sweep, range(following - 1, following)))
-        compare(following, _words(last), _WORD.findall(line_of(computed)))
-        if not all(condition.holds(computed) for condition in conditions):
-            refuse(f"row {following} is in it, which --where leaves out")
-    return Kept(count, size), rows[following - rows.start :]
-
-
-def _shown(line: bytes) -> str:
+def _excerpt(line: bytes) -> str:
     return repr(line.decode("utf-8", "replace").rstrip("\n")[:60])
 
 
@@ -305,10 +373,12 @@ def _words(line: bytes) -> list[str]:
     return _WORD.findall(line.decode("utf-8", "replace"))
 
 
-def _same(one: str, other: str) -> bool:
+def _are_equal(word: str, other: str) -> bool:
     """Return whether two words are equal, or numbers but for their last digits."""
+    if word == other:
+        return True
     try:
-        return one == other or math.isclose(float(one), float(other), rel_tol=_SAME, abs_tol=_SAME)
+        return math.isclose(float(word), float(other), rel_tol=_SAME, abs_tol=_SAME)
     except ValueError:
         return False
 
@@ -316,102 +386,121 @@ def _same(one: str, other: str) -> bool:
 # what kurbel find prints
 
 
-def as_rows(found: Solutions, system: str) -> tuple[Titles, list[Design]]:
+def as_rows(solutions: Solutions, system: str) -> tuple[Titles, list[Design]]:
     """Return a row for each solution: the keys in the units of their ranges, and the key values."""
-    units = [(one.key, one.kind, one.unit) for one in found.varied]
-    largest = [max(map(abs, values)) for values in zip(*(one.key_values for one in found.found))]
-    units += [
-        (one.id, one.kind, shown_unit(one.kind, system, size))
-        for one, size in zip(found.heads, largest)
-    ]
-    rows = [
-        Design(number, tuple(float(convert(value, *of)) for value, (_, *of) in zip(values, units)))
-        for number, values in enumerate(((*one.values, *one.key_values) for one in found.found), 1)
-    ]
-    return Titles(tuple((name, unit) for name, _, unit in units)), rows
+    key_values = [solution.key_values for solution in solutions.found]
+    largest = [max(map(abs, values)) for values in zip(*key_values)]
+
+    # name, kind of quantity and unit of each column: the keys, then the key values
+    columns = [(varied.key, varied.kind, varied.unit) for varied in solutions.varied]
+    for head, size in zip(solutions.heads, largest):
+        columns.append((head.id, head.kind, shown_unit(head.kind, system, size)))
+
+    rows = []
+    for number, solution in enumerate(solutions.found, 1):
+        in_si = (*solution.values, *solution.key_values)
+        cells = tuple(
+            float(convert(value, kind, unit)) for value, (_, kind, unit) in zip(in_si, columns)
+        )
+        rows.append(Design(number, cells))
+    names = tuple((name, unit) for name, _, unit in columns)
+    return Titles(names), rows
 
 
-def as_json(found: Solutions) -> dict[str, object]:
-    """Return the findings for JSON, all in SI."""
-    quantities = [one.quantity for one in found.answers]
-    answers = [
-        {"id": one.id, "symbol": of.symbol, "unit": one.unit}
-        for one, of in zip(found.heads, quantities)
-    ]
-    ranges = [list(span) for span in found.met]
+def as_json(solutions: Solutions) -> dict[str, object]:
+    """Return the solutions for JSON, all in SI."""
+    ranges = [list(span) for span in solutions.met]
     return {
         "kurbel": kurbel.__version__,
         "format": FORMAT,
         "command": "find",
-        "machine": found.machine,
+        "machine": solutions.machine,
         "varied": [
-            {"key": one.key, "low": one.low, "high": one.high, "unit": SI[one.kind]}
-            for one in found.varied
+            {"key": key.key, "low": key.low, "high": key.high, "unit": SI[key.kind]}
+            for key in solutions.varied
         ],
         "wanted": [
-            {"id": one.head.id, "unit": one.head.unit, "aim": one.aim, "value": one.value}
-            for one in found.wanted
-        ],
-        "found": [
             {
-                "values": list(one.values),
-                "key_values": [
-                    {**answer, "value": value} for answer, value in zip(answers, one.key_values)
-                ],
-                "notes": list(one.notes),
+                "id": target.head.id,
+                "unit": target.head.unit,
+                "aim": target.aim,
+                "value": target.value,
             }
-            for one in found.found
+            for target in solutions.wanted
         ],
+        "found": [_solution_json(solutions, solution) for solution in solutions.found],
         "range": ranges[0] if len(ranges) == 1 else ranges,
-        "jumps": [list(jump.values) for jump in found.jumps],
-        "failed": [{"low": one.low, "high": one.high, "failure": one.why} for one in found.failed],
+        "jumps": [list(jump.values) for jump in solutions.jumps],
+        "failed": [
+            {"low": part.low, "high": part.high, "failure": part.why} for part in solutions.failed
+        ],
     }
 
 
-def picture(found: Solutions, system: str) -> Picture:
+def _solution_json(solutions: Solutions, solution: Solution) -> dict[str, object]:
+    key_values = []
+    for head, answer, value in zip(solutions.heads, solutions.answers, solution.key_values):
+        symbol = answer.quantity.symbol
+        key_values.append({"id": head.id, "symbol": symbol, "unit": head.unit, "value": value})
+    return {
+        "values": list(solution.values),
+        "key_values": key_values,
+        "notes": list(solution.notes),
+    }
+
+
+def picture(solutions: Solutions, system: str) -> Picture:
     """Return the wanted key value over the only key, with the solutions, and gaps at jumps and where designs fail."""
-    key, wanted = found.varied[0], found.wanted[0]
-    places, values = found.places[:, 0], found.values[:, wanted.place]
-    # one nan at a jump, two for a design that fails
-    places, values = (np.repeat(one, 1 + np.isnan(values)) for one in (places, values))
-    jumps = np.searchsorted(places, [jump.values[0] for jump in found.jumps])
-    x, y = np.insert(places, jumps, np.nan), np.insert(values, jumps, np.nan)
-    x = np.where(np.isnan(y), np.nan, x)
-    quantity = found.answers[wanted.place].quantity
+    key = solutions.varied[0]
+    target = solutions.wanted[0]
+    x, y = _course(solutions, target)
+
+    # the key value, and the level that is wanted
+    quantity = solutions.answers[target.place].quantity
     symbol = Words(quantity.symbol, quantity.ascii_symbol)
     curves = [Curve(symbol, x, y)]
-    if wanted.value is not None:
-        curves.append(level(x, wanted.value, Words(wanted.text)))
+    if target.value is not None:
+        curves.append(level(x, target.value, Words(target.text)))
+
+    # a mark at each solution
     name = Words(key.key.rpartition(".")[2])
-    marks = tuple(
-        Mark(
-            one.values[0],
-            one.key_values[wanted.place],
-            PageFigure(name, one.values[0], kind=key.kind),
-        )
-        for one in found.found
-    )
-    across, up = (
-        Axis(Words(key.key), key.kind, low=key.low, high=key.high),
-        Axis(symbol, wanted.head.kind),
-    )
-    panel = in_units(Panel(across, up, tuple(curves), marks=marks), system)
+    marks = []
+    for solution in solutions.found:
+        figure = PageFigure(name, solution.values[0], kind=key.kind)
+        marks.append(Mark(solution.values[0], solution.key_values[target.place], figure))
+
+    across = Axis(Words(key.key), key.kind, low=key.low, high=key.high)
+    up = Axis(symbol, target.head.kind)
+    panel = in_units(Panel(across, up, tuple(curves), marks=tuple(marks)), system)
     text = "The key value over the key; marked where it is as wanted, parted where it jumps or designs fail."
-    return Picture("find", f"{wanted.head.id} over {key.key}", text, (panel,), found.machine)
+    return Picture("find", f"{target.head.id} over {key.key}", text, (panel,), solutions.machine)
 
 
-def remarks(found: Solutions) -> list[str]:
+def _course(solutions: Solutions, target: Target) -> tuple[Array, Array]:
+    """Return the key (n,) and the key value (n,), with a nan at each jump and two where a design fails."""
+    keys = solutions.places[:, 0]
+    key_values = solutions.values[:, target.place]
+    times = 1 + np.isnan(key_values)
+    keys = np.repeat(keys, times)
+    key_values = np.repeat(key_values, times)
+    jumps = np.searchsorted(keys, [jump.values[0] for jump in solutions.jumps])
+    keys = np.insert(keys, jumps, np.nan)
+    key_values = np.insert(key_values, jumps, np.nan)
+    keys = np.where(np.isnan(key_values), np.nan, keys)
+    return keys, key_values
+
+
+def remarks(solutions: Solutions) -> list[str]:
     """Return the remarks on the solutions, a line each."""
-    key = found.varied[0]
-    lines = [
-        f"solution {number}: {note}"
-        for number, one in enumerate(found.found, 1)
-        for note in one.notes
-    ]
-    for jump in found.jumps:
-        place = key.written(jump.values[0], figures=9)
-        lines.append(f"{found.wanted[0].text}: passed by a jump at {key.key} = {place}")
-    for part in found.failed:
-        where = "at" if part.low == part.high else f"from {key.in_unit(part.low):.6g} to"
+    key = solutions.varied[0]
+    lines = []
+    for number, solution in enumerate(solutions.found, 1):
+        lines += [f"solution {number}: {note}" for note in solution.notes]
+    for jump in solutions.jumps:
+        value = key.written(jump.values[0], figures=9)
+        lines.append(f"{solutions.wanted[0].text}: passed by a jump at {key.key} = {value}")
+    for part in solutions.failed:
+        is_point = part.low == part.high
+        where = "at" if is_point else f"from {key.in_unit(part.low):.6g} to"
         lines.append(f"{key.key} {where} {key.written(part.high)}: designs fail: {part.why}")
     return lines

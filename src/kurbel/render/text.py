@@ -279,6 +279,14 @@ class Look(NamedTuple):
         """Return an angle with its unit."""
         return self.angle(value) + self.text("°")
 
+    def extreme_at(self, value: float, side: str) -> str:
+        """Return the angle of an extreme with its unit; with a minus after it if it is the limit before a jump.
+
+        >>> Look().extreme_at(360.0, "before"), Look().extreme_at(67.3, "")
+        ('360°−', '67.3°')
+        """
+        return self.degrees(value) + self.text("−" if side else "")
+
     def symbol(self, symbol: str, ascii_symbol: str) -> str:
         """Return the textbook symbol, or its ASCII name."""
         return symbol if self.has(symbol) else ascii_symbol

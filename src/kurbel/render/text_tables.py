@@ -119,12 +119,12 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
     scale would print it as 0.0.
     """
     blank = "_" if table.headed else " "
-    columns = [
-        TextColumn(
-            head, "", [look.number(look.text(name.replace("_", blank))) for name in names], "name"
+    columns = list[TextColumn]()
+    for head, names in zip(table.heads, zip(*table.names)):
+        words = [table.words.get(name) or name.replace("_", blank) for name in names]
+        columns.append(
+            TextColumn(head, "", [look.number(look.text(text)) for text in words], "name")
         )
-        for head, names in zip(table.heads, zip(*table.names))
-    ]
     sharing: dict[str, list[CellValue]] = {}
     for column in table.columns:
         if column.decimals is None and not column.alone:
@@ -181,7 +181,7 @@ def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> Te
     """Return key values as a table: symbol, value, unit, crank angle, meaning."""
     rows = []
     for one in found:
-        at = "" if one.at_deg is None else look.degrees(one.at_deg)
+        at = "" if one.at_deg is None else look.extreme_at(one.at_deg, one.side)
         symbol = look.symbol(one.symbol, one.ascii_symbol)
         rows.append((symbol, _value(one, look), look.unit(one.unit), at, look.sentence(one.text)))
     heads = (

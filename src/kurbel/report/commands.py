@@ -187,7 +187,8 @@ _ROWS = (
         _STALLS,
         section=(3, "Forces"),
         options=("uncertainty",),
-        first="x theta p_head P N T M_out c_m b_max P_max P_min N_max T_max T_min power mean_pressure",
+        first="x theta P N T M_out b_max c_max theta_ddot_max theta_dot_max power mean_pressure "
+        "P_max P_min N_max N_min T_max T_min friction_work friction_power friction_loss friction_force_mean",
         in_cases="p_max P_max P_min T_max rod_compression_max rod_tension_max reversal_angle reversal_ratio work power",
     ),
     Command(

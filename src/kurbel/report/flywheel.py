@@ -58,7 +58,8 @@ def _flywheel_notes(case: Case) -> Iterator[str]:
     if turning.rigid:
         yield (
             f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
-            "the driven inertia turns with the flywheel."
+            "the driven inertia turns with the flywheel, and M_K is what it and the load take, J₂ α + M_load, without "
+            "vibrations of the coupling itself."
         )
 
 

@@ -1,23 +1,15 @@
-"""The reports of `kurbel motion` and `kurbel forces`: every cylinder by itself."""
+"""The reports of `kurbel motion` and `kurbel forces`: every cylinder by itself.
+
+What is only said to people, warnings and what is left out, is imported when it is read: a CSV table has none of it.
+"""
 
 from collections.abc import Iterable, Iterator
 
 from kurbel.errors import UsageError
-from kurbel.notes.left_out import (
-    forces_left_out,
-    motion_left_out,
-)
-from kurbel.notes.warnings import (
-    by_cylinder,
-    guide_notes,
-    rod_ratio_notes,
-    valve_warnings,
-)
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.indicated import OF_CYCLES
 from kurbel.tables.frame import Frame, Functions, PlaceRow, Places, Subject
-from kurbel.traces.pressure import TracePressure
+from kurbel.tables.tables import LeftOut
 
 
 def mechanism_notes(case: Case) -> Iterable[str]:
@@ -27,16 +19,34 @@ def mechanism_notes(case: Case) -> Iterable[str]:
     )
 
 
+def _motion_left_out(case: Case, forces: CylinderForces) -> Iterator[LeftOut]:
+    from kurbel.notes.left_out import motion_left_out
+
+    yield from motion_left_out(case.machine, forces.drive.cylinder)
+
+
+def _valve_warnings(forces: CylinderForces) -> Iterator[str]:
+    from kurbel.notes.warnings import valve_warnings
+
+    yield from valve_warnings(forces)
+
+
+def _forces_left_out(case: Case, forces: CylinderForces) -> Iterator[LeftOut]:
+    from kurbel.notes.left_out import forces_left_out
+
+    yield from forces_left_out(case.machine, forces)
+
+
 def _with_motion(case: Case) -> list[Subject]:
     return [
         Subject(
-            cylinder.drive.name,
-            cylinder,
-            cylinder.at,
-            left_out=motion_left_out(case.machine, cylinder.drive.cylinder),
-            warnings=valve_warnings(cylinder),
+            forces.drive.name,
+            forces,
+            forces.at,
+            left_out=_motion_left_out(case, forces),
+            warnings=_valve_warnings(forces),
         )
-        for cylinder in case.cylinders
+        for forces in case.cylinders
     ]
 
 
@@ -46,14 +56,15 @@ MOTION = Functions("Motion of the crank train", _with_motion, mechanism_notes, l
 def _with_forces(case: Case) -> list[Subject]:
     return [
         Subject(
-            cylinder.drive.name,
-            cylinder,
-            cylinder.at,
-            left_out=forces_left_out(case.machine, cylinder),
-            tables=_piston_table(cylinder),
-            pistons=[Subject(piston.name, piston) for piston in cylinder.pistons],
+            forces.drive.name,
+            forces,
+            forces.at,
+            left_out=_forces_left_out(case, forces),
+            tables=_piston_table(forces),
+            pistons=[Subject(piston.name, piston) for piston in forces.pistons],
+            idle="" if forces.drive.has_force else "no force acts; kurbel motion prints its motion",
         )
-        for cylinder in case.cylinders
+        for forces in case.cylinders
     ]
 
 
@@ -62,13 +73,14 @@ def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
-    cylinders, warnings = (
-        _with_forces(case),
-        by_cylinder(case) if frame.prose and case.cylinders else {},
-    )
-    cylinders = [
-        cylinder._replace(warnings=warnings.get(cylinder.name, ())) for cylinder in cylinders
-    ]
+    cylinders = _with_forces(case)
+    if frame.prose and cylinders:
+        from kurbel.notes.warnings import by_cylinder
+
+        warnings = by_cylinder(case)
+        cylinders = [
+            subject._replace(warnings=warnings.get(subject.name, ())) for subject in cylinders
+        ]
     if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()
@@ -97,6 +109,8 @@ def _cycle_table(forces: CylinderForces) -> Iterator[Places]:
     cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
     if not cycles:
         return
+    from kurbel.solver.indicated import OF_CYCLES
+
     declared = {
         cycle.id: cycle.absolute() if gas and gas.absolute else cycle for cycle in OF_CYCLES
     }
@@ -108,9 +122,16 @@ def _cycle_table(forces: CylinderForces) -> Iterator[Places]:
 
 
 def _forces_notes(case: Case) -> Iterator[str]:
+    from kurbel.notes.warnings import guide_notes, rod_ratio_notes
+
     yield from mechanism_notes(case)
     yield from guide_notes(case)
     yield from rod_ratio_notes(case)
+    if any(forces.drive.pin_friction and forces.drive.has_force for forces in case.cylinders):
+        yield (
+            "T is M/R, less the friction of pins and journals, and W its mean; T_Z is the force at the crank pin, "
+            "which the books call T."
+        )
     if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
         yield (
             "S of an exact rod is the force between the masses at its ends and the force along it at neither pin: "
@@ -134,7 +155,7 @@ def _forces_notes(case: Case) -> Iterator[str]:
         for gas in forces.drive.gas
         for end in (gas.head, gas.crank)
     ]
-    if any(isinstance(end, TracePressure) and end.trace.even for end in ends):
+    if any(end and end.traced and end.trace.even for end in ends):
         yield (
             "ΔA/A of a trace is not a rounding error: the indicated work is by the trapezoid rule on the samples, "
             "the quadrature by straight lines between them; the difference shows the effect of the sample spacing."

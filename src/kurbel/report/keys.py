@@ -10,6 +10,7 @@ from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import near
+from kurbel.tables.sources import legend
 
 
 class ListedKey(NamedTuple):
@@ -45,17 +46,19 @@ class ListedKey(NamedTuple):
             "meaning": key.text.replace("`", ""),
             "symbol": key.symbol,
             "form": self._form,
+            "usual": key.usual,
             "absent": self.absent or "left out",
             "or give": key.instead or ", ".join(self.others),
             "needs": key.needs,
             "example": key.line(name),
             "below it": ", ".join(below),
+            "source": legend([key.text, key.usual]),
         }
         return [(head, text) for head, text in found.items() if text]
 
     @property
     def _form(self) -> str:
-        return self.key.form.written.replace("`", "").replace("\t", "\\t")
+        return self.key.written.replace("`", "").replace("\t", "\\t")
 
 
 def every_place() -> dict[str, list[ListedKey]]:

@@ -1,10 +1,13 @@
-"""All results of a machine, each computed on first use."""
+"""All results of a machine, each computed on first use, and imported on first use.
+
+A chapter of results is a row of `CHAPTERS`; its class is behind a door, a function with one import inside.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.arrays import Array
 from kurbel.declared.reading import text_in_one_line
@@ -12,16 +15,18 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import called
-from kurbel.solver.chapters.balance import MachineBalance
-from kurbel.solver.chapters.bearings import Bearing, ShaftBearings
-from kurbel.solver.chapters.delivery import CompressorStage, Delivery, MachineDelivery
-from kurbel.solver.chapters.harmonics import MachineOrders
-from kurbel.solver.chapters.stress import CrankshaftStrength
-from kurbel.solver.chapters.torsion import ShaftVibration
-from kurbel.solver.effort import TurningEffort
-from kurbel.solver.figures import Figure, NotebookView, Results, result_rows
-from kurbel.solver.flywheel import DeadCentre, MachineTurning
+from kurbel.solver.figures import Figure, NotebookView, Results, doors_of, result_rows
 from kurbel.solver.forces import CylinderForces
+
+if TYPE_CHECKING:
+    from kurbel.solver.chapters.balance import MachineBalance
+    from kurbel.solver.chapters.bearings import Bearing, ShaftBearings
+    from kurbel.solver.chapters.delivery import CompressorStage, Delivery, MachineDelivery
+    from kurbel.solver.chapters.harmonics import MachineOrders
+    from kurbel.solver.chapters.stress import CrankshaftStrength
+    from kurbel.solver.chapters.torsion import ShaftVibration
+    from kurbel.solver.effort import TurningEffort
+    from kurbel.solver.flywheel import DeadCentre, MachineTurning
 
 
 class Case(NotebookView):
@@ -43,26 +48,38 @@ class Case(NotebookView):
         Of several cylinders each has its own: `case.cylinders[0]["P_max"]`. Raises UsageError where there is none.
         """
         why = ""
-        for chapter in CHAPTERS:
-            with_offers = chapter.kind is CylinderForces and self.cylinders
-            rows = self.cylinders[0].rows if with_offers else result_rows(chapter.kind)
-            if called(name, (row.quantity for row in rows.key_values.values())):
-                found = chapter.of(self)
-                if len(found) == 1:
-                    return found[0][name]
-                why = chapter.each.format(name) if found else why or f"this machine has no {name}"
+        for chapter in self._chapters_with(name):
+            results = chapter.of(self)
+            if len(results) == 1:
+                return results[0][name]
+            why = chapter.each.format(name) if results else why or f"this machine has no {name}"
         every = tuple(id for chapter in CHAPTERS for id in result_rows(chapter.kind).key_values)
         raise UsageError(
             why or f"no key value '{text_in_one_line(name)}'{did_you_mean(name, every)}"
         )
 
+    def _chapters_with(self, name: str) -> Iterator[Chapter]:
+        """Yield the chapters that have a key value; one is opened only if those before it do not have it."""
+        # without the parts that this machine has not
+        having = False
+        for chapter in CHAPTERS:
+            if chapter.kind is CylinderForces and self.cylinders:
+                rows = self.cylinders[0].rows
+            else:
+                rows = result_rows(chapter.kind, closed=doors_of(chapter.kind))
+            if called(name, rows.lists.all_key_values):
+                having = True
+                yield chapter
+        if having:
+            return
+        for chapter in CHAPTERS:
+            if called(name, result_rows(chapter.kind).lists.all_key_values):
+                yield chapter
+
     def results(self, command: str) -> list[Results]:
         """Return all results of a command; raises what these raise, UsageError where the machine has none."""
         return [
-            one
-            for chapter in CHAPTERS
-            if chapter.kind.command == command
-            for one in chapter.of(self)
+            one for chapter in CHAPTERS if chapter.command == command for one in chapter.of(self)
         ]
 
     def __repr__(self) -> str:
@@ -80,31 +97,37 @@ class Case(NotebookView):
     @cached_property
     def stress(self) -> CrankshaftStrength:
         """Strength of the crankshaft. Raises UsageError where the machine has none that can be examined."""
-        return CrankshaftStrength(self.machine, self.cylinders)
+        return _stress()(self.machine, self.cylinders)
 
     @cached_property
     def bearings(self) -> ShaftBearings:
         """Loads on pins and main bearings. Raises UsageError where nothing loads them."""
+        from kurbel.solver.chapters.bearings import ShaftBearings
+
         return ShaftBearings(self.machine, self.cylinders)
 
     @cached_property
     def balance(self) -> MachineBalance:
         """Unbalanced forces and moments of the whole machine. Raises UsageError where no masses move."""
-        return MachineBalance(self.effort)
+        return _balance()(self.effort)
 
     @cached_property
     def flywheel(self) -> MachineTurning:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
-        return MachineTurning(self.effort)
+        return _turning()(self.effort)
 
     @cached_property
     def delivery(self) -> MachineDelivery:
         """What pumps and compressors deliver. Raises UsageError where the machine delivers nothing."""
+        from kurbel.solver.chapters.delivery import MachineDelivery
+
         return MachineDelivery(self.effort)
 
     @cached_property
     def effort(self) -> TurningEffort:
         """Turning effort and load of the whole machine, which raise errors only when they are computed."""
+        from kurbel.solver.effort import TurningEffort
+
         return TurningEffort(self.machine, self.cylinders, self.count)
 
     def harmonics(self, orders: Array | None = None) -> MachineOrders:
@@ -113,7 +136,7 @@ class Case(NotebookView):
         Raises UsageError where nothing turns the machine, NoSolutionError where losses leave too little.
         """
         _ = self.effort.excess  # refuses a machine that cannot run
-        return MachineOrders(self.effort, orders)
+        return _orders()(self.effort, orders)
 
     @cached_property
     def torsion(self) -> ShaftVibration:
@@ -122,43 +145,110 @@ class Case(NotebookView):
 
     def torsion_of(self, orders: Array | None) -> ShaftVibration:
         """Return the torsional vibration by these orders (k,)."""
-        return ShaftVibration(self.effort, orders)
+        return _torsion()(self.effort, orders)
+
+
+# the doors
+
+
+def _turning() -> type[MachineTurning]:
+    from kurbel.solver.flywheel import MachineTurning
+
+    return MachineTurning
+
+
+def _dead_centre() -> type[DeadCentre]:
+    from kurbel.solver.flywheel import DeadCentre
+
+    return DeadCentre
+
+
+def _stress() -> type[CrankshaftStrength]:
+    from kurbel.solver.chapters.stress import CrankshaftStrength
+
+    return CrankshaftStrength
+
+
+def _bearing() -> type[Bearing]:
+    from kurbel.solver.chapters.bearings import Bearing
+
+    return Bearing
+
+
+def _balance() -> type[MachineBalance]:
+    from kurbel.solver.chapters.balance import MachineBalance
+
+    return MachineBalance
+
+
+def _orders() -> type[MachineOrders]:
+    from kurbel.solver.chapters.harmonics import MachineOrders
+
+    return MachineOrders
+
+
+def _torsion() -> type[ShaftVibration]:
+    from kurbel.solver.chapters.torsion import ShaftVibration
+
+    return ShaftVibration
+
+
+def _pump() -> type[Delivery]:
+    from kurbel.solver.chapters.delivery import Delivery
+
+    return Delivery
+
+
+def _stage() -> type[CompressorStage]:
+    from kurbel.solver.chapters.delivery import CompressorStage
+
+    return CompressorStage
 
 
 class Chapter(NamedTuple):
-    """A class of results, and a function that returns those of a case.
+    """A class of results behind a door, the command that prints it, and a function that returns those of a case.
 
     each: where these are several, the message for a key value `{}` of which it is not known whose it is.
     """
 
-    kind: type[Results]
+    command: str
+    door: Callable[[], type[Results]]
     of: Callable[[Case], Sequence[Results]]
     each: str = ""
+
+    @property
+    def kind(self) -> type[Results]:
+        """The class."""
+        return self.door()
 
 
 CHAPTERS = (
     Chapter(
-        CylinderForces,
+        "forces",
+        lambda: CylinderForces,
         lambda case: case.cylinders,
         "each cylinder has its own {}: ask one of case.cylinders",
     ),
-    Chapter(MachineTurning, lambda case: [case.flywheel]),
+    Chapter("flywheel", _turning, lambda case: [case.flywheel]),
     Chapter(
-        DeadCentre,
-        lambda case: [DeadCentre(cylinder, case.effort.cycle) for cylinder in case.cylinders],
+        "flywheel",
+        _dead_centre,
+        lambda case: [_dead_centre()(cylinder, case.effort.cycle) for cylinder in case.cylinders],
     ),
-    Chapter(CrankshaftStrength, lambda case: [case.stress]),
+    Chapter("stress", _stress, lambda case: [case.stress]),
     Chapter(
-        Bearing,
+        "bearings",
+        _bearing,
         lambda case: case.bearings.parts,
         "each pin and main bearing has its own {}: ask one of case.bearings.parts",
     ),
-    Chapter(MachineBalance, lambda case: [case.balance]),
-    Chapter(MachineOrders, lambda case: [case.harmonics()]),
-    Chapter(ShaftVibration, lambda case: [case.torsion]),
-    Chapter(Delivery, lambda case: [case.delivery.pump] if case.delivery.pump else []),
+    Chapter("balance", _balance, lambda case: [case.balance]),
+    Chapter("harmonics", _orders, lambda case: [case.harmonics()]),
+    Chapter("torsion", _torsion, lambda case: [case.torsion]),
+    Chapter("delivery", _pump, lambda case: [case.delivery.pump] if case.delivery.pump else []),
     Chapter(
-        CompressorStage,
+        "delivery",
+        _stage,
         lambda case: case.delivery.stages,
         "each stage has its own {}: ask one of case.delivery.stages",
     ),

@@ -14,7 +14,6 @@ from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.motion import MotionColumns
-from kurbel.traces.pressure import TracePressure
 
 _BOTH = ("motion", "forces")
 _ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
@@ -45,7 +44,7 @@ def _own_volume(state: Chambers, end: str) -> Number | None:
 
 def _own_rise(state: Chambers, end: str) -> Array | None:
     chamber = _own_end(state, end)
-    return chamber.rise(state.phi) if isinstance(chamber, TracePressure) else None
+    return chamber.rise(state.phi) if chamber and chamber.traced else None
 
 
 def _opening(state: Chambers, end: str) -> Number | None:
@@ -152,7 +151,7 @@ class Chambers(MotionColumns):
 
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""
-        if isinstance(end, TracePressure):
+        if end.traced:
             return end.at(self.phi, self.within)
         left = self.mechanism.remaining(self.posed) / self.mechanism.stroke if end.steep else None
         return end.at(self.z, self.phi, self.within, self.drive.index, left)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,12 +15,13 @@ from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.batch import taken
 from kurbel.machine.parts import GasOnRings
-from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.motion import every_dead_centre
-from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
+
+if TYPE_CHECKING:
+    from kurbel.solver.shaft import SupportedShaft
 
 _IDLE = 1e-4
 """Mean indicated pressure in Pa that is rounding: such a piston neither drives nor is driven."""
@@ -240,8 +241,8 @@ class Drive:
         ):
             return None
         pin, journal = friction.crank_pin_diameter, friction.journal_diameter
-        if isinstance(self.mechanism, ScotchYoke) and self.mechanism.pin_diameter is not None:
-            pin = self.mechanism.pin_diameter
+        if self.mechanism.rubbing_pin is not None:
+            pin = self.mechanism.rubbing_pin
         given = (
             (friction.crank_pin, shaft.pin_diameter if shaft and pin is None else pin),
             (friction.crosshead_pin, friction.crosshead_pin_diameter),
@@ -250,7 +251,11 @@ class Drive:
         at_pin, at_crosshead, at_journals = (
             0.0 if f is None or d is None else f * d / 2 for f, d in given
         )
-        line = SupportedShaft(self.machine) if shaft and not shaft_obstacle(self.machine) else None
+        line = None
+        if shaft:
+            from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
+
+            line = None if shaft_obstacle(self.machine) else SupportedShaft(self.machine)
         return PinFriction(at_pin, at_crosshead, at_journals, line)
 
     def locks(self, degrees: float) -> str:

@@ -14,21 +14,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Number, Truth
-from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.turning import Harmonics, KnownDiagram, Swing
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.pieces import Angles, Pieces, SampledExtremes, common
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State, reduced_inertia
+
+if TYPE_CHECKING:
+    from kurbel.machine.turning import KnownDiagram
 
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
@@ -92,11 +93,8 @@ class TurningEffort:
         self.cycle = 360.0 * machine.revolutions
         self.diagram = machine.load.diagram if machine.load else None
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
-        self.swing: Any = (
-            machine.effort.energy(machine.revolutions)
-            if isinstance(machine.effort, Swing)
-            else None
-        )
+        given = machine.effort
+        self.swing: Any = given.energy(machine.revolutions) if given and given.alone else None
         # cylinders in which a force acts, identical ones in one group
         groups: dict[CylinderForces, list[CylinderForces]] = {}
         for forces in cylinders:
@@ -126,7 +124,11 @@ class TurningEffort:
                 raise UsageError(
                     f"{name}: a speed of {show(speed, 'speed')} is too {size} to compute with"
                 )
-        known = [corners(one, self.cycle) for one in (self.machine.effort, self.diagram) if one]
+        known = []
+        for one in (one for one in (self.machine.effort, self.diagram) if one):
+            from kurbel.solver.given_torque import corners
+
+            known.append(corners(one, self.cycle))
         breaks = np.concatenate([np.zeros(0), *known])
         cuts = Angles(np.repeat(np.arange(count), len(breaks)), np.tile(breaks, count))
         if not self.groups:
@@ -169,7 +171,7 @@ class TurningEffort:
     @cached_property
     def given(self) -> Array | None:
         """The effort in N m that is known from elsewhere, without losses; None where cylinders give it."""
-        return torque_on(self.machine.effort, self.pieces) if self.machine.effort else None
+        return _torque_on(self.machine.effort, self.pieces) if self.machine.effort else None
 
     @cached_property
     def drives(self) -> Truth:
@@ -236,14 +238,14 @@ class TurningEffort:
         level = self.pieces.filled(self.pieces.of(self.mean))
         if self.diagram is None:
             return level
-        given = torque_on(self.diagram, self.pieces)
+        given = _torque_on(self.diagram, self.pieces)
         return level + (given - self.pieces.of(self.pieces.mean(given)))
 
     @property
     def deficit(self) -> Array:
         """Mean of M less that of a load by points in N m, (machines,); 0 where they agree, and for another load."""
         given = (
-            self.pieces.mean(torque_on(self.diagram, self.pieces)) if self.diagram else self.mean
+            self.pieces.mean(_torque_on(self.diagram, self.pieces)) if self.diagram else self.mean
         )
         return unless_cancelled(
             self.mean - given, np.maximum(np.abs(given), np.abs(self.mean)), _BALANCED
@@ -368,34 +370,7 @@ class ExcessWork:
         return np.nan_to_num(self.summits.largest[0] - self.summits.smallest[0], nan=0.0)
 
 
-# torques that are known from elsewhere
+def _torque_on(given: KnownDiagram, pieces: Pieces) -> Array:
+    from kurbel.solver.given_torque import torque_on
 
-
-def corners(given: KnownDiagram, cycle: float) -> Array:
-    """Return the angles in degrees between which a torque is smooth; of waves so many that pieces resolve them."""
-    if isinstance(given, Swing):
-        return np.zeros(0)
-    if isinstance(given, Harmonics):
-        highest = max(1.0, *(order for order, _, _ in given.terms))
-        return np.linspace(0.0, cycle, math.ceil(cycle / 90 * highest) + 1)
-    return np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel()
-
-
-def torque_on(given: KnownDiagram, pieces: Pieces) -> Array:
-    """Return a torque in N m on pieces: M = mean + Σ c cos νφ + s sin νφ, or points with straight lines between them.
-
-    Points repeat from their last angle on; at a jump the side counts that holds the middle of a piece. Of a swing the
-    mean alone is known, 0 where it is not.
-    """
-    if isinstance(given, Swing):
-        mean = np.zeros(pieces.count) if given.mean is None else given.mean
-        return pieces.filled(pieces.of(mean))
-    if isinstance(given, Harmonics):
-        orders, cos, sin = np.array(given.terms).T
-        waves = unit_vector(np.multiply.outer(pieces.degrees, orders)) @ (cos - 1j * sin)
-        return given.mean + waves.real
-    angles, torques = np.array(given.angles), np.array(given.torques)
-    turn = angles[-1] * np.floor(pieces.middle / angles[-1])
-    line = np.searchsorted(angles, pieces.middle - turn, side="right") - 1
-    rise = (torques[line + 1] - torques[line]) / (angles[line + 1] - angles[line])
-    return torques[line] + rise * (pieces.degrees - turn - angles[line])
+    return torque_on(given, pieces)

@@ -8,7 +8,7 @@ They are printed in the order of their definition, for people below the `Heading
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -133,8 +133,12 @@ def _in_order(rows: Iterable[QuantityRow]) -> dict[str, QuantityRow]:
     found: dict[str, QuantityRow] = {}
     for row in rows:
         found.setdefault(row.quantity.id, row)
-    ordered = [row.quantity for row in found.values() if not row.quantity.after]
-    for quantity in (row.quantity for row in found.values() if row.quantity.after):
+
+    def follows(quantity: Quantity) -> bool:
+        return quantity.after in found
+
+    ordered = [row.quantity for row in found.values() if not follows(row.quantity)]
+    for quantity in (row.quantity for row in found.values() if follows(row.quantity)):
         place = [other.id for other in ordered].index(quantity.after) + 1
         while place < len(ordered) and ordered[place].after == quantity.after:
             place += 1
@@ -167,14 +171,28 @@ class Rows(NamedTuple):
         return Rows(*found)
 
 
+Door = Callable[[], "type[Results]"]
+"""A function with one import inside, that of the class it returns."""
+
+
 class PartResults(Computed[V]):
     """Results that are a part of others; their rows are printed in the place of the attribute."""
 
     def __init__(
-        self, function: Of[V], kind: type[Results], unless: ResultCondition | None
+        self,
+        function: Of[V],
+        kind: type[Results] | Door,
+        unless: ResultCondition | None,
+        there: ResultCondition | None,
     ) -> None:
         super().__init__(function, Quantity("", "", "", function.__doc__ or ""))
-        self.kind, self.unless = kind, unless
+        self._door: Door = (lambda: kind) if isinstance(kind, type) else kind
+        self.unless, self.there = unless, there
+
+    @cached_property
+    def kind(self) -> type[Results]:
+        """The class of the results."""
+        return self._door()
 
     def of_whole(self, rows: Iterable[QuantityRow]) -> Iterator[QuantityRow]:
         """Yield the rows of the part for the results that it is a part of; None where they have no such part."""
@@ -183,20 +201,24 @@ class PartResults(Computed[V]):
             found = self.__get__(results)
             return None if found is None else function(found)
 
-        for quantity, of, unless in rows:
+        for quantity, of, unless, repeats in rows:
+            adds_nothing = self.unless or (unless and partial(of_part, unless))
             yield QuantityRow(
-                quantity, partial(of_part, of), self.unless or (unless and partial(of_part, unless))
+                quantity, partial(of_part, of), adds_nothing, repeats and partial(of_part, repeats)
             )
 
 
 def part(
-    kind: type[Results], unless: ResultCondition | None = None
+    kind: type[Results] | Door,
+    unless: ResultCondition | None = None,
+    there: ResultCondition | None = None,
 ) -> Callable[[Of[V]], PartResults[V]]:
     """Return a decorator for a method that returns results of this class, or None where there is no such part.
 
-    unless: takes the results; where it is true, all of the part says nothing new.
+    kind: the class, or a door to it. unless: takes the results; where it is true, all of the part says nothing new.
+    there: of a part behind a door, takes the results; where it is false, there is no such part: the door stays closed.
     """
-    return lambda function: PartResults(function, kind, unless)
+    return lambda function: PartResults(function, kind, unless, there)
 
 
 class ExtremesOfColumns:
@@ -215,9 +237,16 @@ class ExtremesOfColumns:
             found = results.extremes_of(column)
             return None if found is None else self.ENDS[end](found)
 
-        for one in columns:
-            for end in self.ENDS if one.peak else ("max", "min"):
-                yield QuantityRow(one.extreme(end), partial(extreme, one.id, end))
+        def repeats(column: str, end: str, results: Any) -> bool:
+            # the largest magnitude is that of the largest or the smallest value
+            return end == "peak" or results.repeats(column)
+
+        for column in columns:
+            for end in self.ENDS if column.peak else ("max", "min"):
+                names = column.id, end
+                yield QuantityRow(
+                    column.extreme(end), partial(extreme, *names), repeats=partial(repeats, *names)
+                )
 
 
 class Results(NotebookView):
@@ -226,17 +255,39 @@ class Results(NotebookView):
     command: ClassVar[str] = ""
     state: ClassVar[type[AtAngles] | None] = None
     """The class of its columns."""
+    DOORS: ClassVar[dict[str, PartResults[Any]]] = {}
+    """Its parts behind doors, by name."""
 
     def __init_subclass__(cls) -> None:
+        parts = (
+            attribute for attribute in vars(cls).values() if isinstance(attribute, PartResults)
+        )
+        cls.DOORS = cls.DOORS | {part.name: part for part in parts if part.there}
         # what the class has through its parts, or as extremes, are attributes as well
-        for id, row in result_rows(cls).key_values.items():
-            if not hasattr(cls, id):
-                setattr(cls, id, property(row.of, doc=row.quantity.text))
+        _name_attributes(cls, result_rows(cls, closed=doors_of(cls)))
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what a part behind a door has by this name; Python asks here for what has no other attribute."""
+        kind = type(self)
+        may_be_behind_a_door = (
+            bool(self.DOORS) and not name.startswith("_") and not hasattr(kind, name)
+        )
+        if not may_be_behind_a_door or name not in result_rows(kind).key_values:
+            raise AttributeError(f"{kind.__name__!r} object has no attribute {name!r}")
+        _name_attributes(kind, result_rows(kind))
+        return object.__getattribute__(self, name)
+
+    @property
+    def closed(self) -> frozenset[str]:
+        """The names of its parts behind doors that these results do not have."""
+        return frozenset(
+            name for name, part in self.DOORS.items() if part.there and not part.there(self)
+        )
 
     @property
     def rows(self) -> Rows:
         """The rows that results of this kind may have."""
-        return result_rows(type(self))
+        return result_rows(type(self), closed=self.closed)
 
     @property
     def lists(self) -> Lists:
@@ -245,7 +296,12 @@ class Results(NotebookView):
 
     def __getitem__(self, name: str) -> Figure:
         """Return a key value by its id or printed symbol; raises UsageError where there is none."""
-        row = _only(name, self.rows.key_values, "key value")
+        rows = self.rows
+        if self.closed and not called(name, rows.lists.all_key_values):
+            rows = result_rows(
+                type(self)
+            )  # of a part that these results do not have: the message says what it is
+        row = _only(name, rows.key_values, "key value")
         value = row.of(self)
         if value is None:
             raise UsageError(f"this machine has no {row.quantity.id}: {row.quantity.text}")
@@ -289,6 +345,15 @@ class Results(NotebookView):
         """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
         raise UsageError("these results have key values, and no columns over the crank angle")
 
+    def repeats(self, column: str) -> bool:
+        """Return whether people read the extremes of a column in other rows, or they are 0."""
+        extremes = self.extremes_of(column)
+        return extremes is not None and extremes.largest.value == extremes.smallest.value == 0
+
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
+        return None
+
     @property
     def _of(self) -> str:
         """What the results are of."""
@@ -298,15 +363,33 @@ class Results(NotebookView):
         return f"<kurbel {self.command} of {self._of}: ['id'], key_values(), columns(degrees)>"
 
 
-_ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...]], Rows] = {}
+_ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...], frozenset[str]], Rows] = {}
+
+
+def doors_of(kind: type[Results]) -> frozenset[str]:
+    """Return the names of the parts of a class of results that are behind doors."""
+    return frozenset(kind.DOORS)
+
+
+def _name_attributes(kind: type[Results], rows: Rows) -> None:
+    """Make an attribute of each key value that is none yet."""
+    for id, row in rows.key_values.items():
+        if not hasattr(kind, id):
+            setattr(kind, id, property(row.of, doc=row.quantity.text))
 
 
 def result_rows(
-    kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tuple[KeyOffer, ...] = ()
+    kind: type[Results],
+    offers: tuple[Offer, ...] = (),
+    key_offers: tuple[KeyOffer, ...] = (),
+    closed: frozenset[str] = frozenset(),
 ) -> Rows:
-    """Return the rows of a class of results, with the columns and key values that mechanisms add."""
-    if (kind, offers, key_offers) in _ROWS:
-        return _ROWS[kind, offers, key_offers]
+    """Return the rows of a class of results, with the columns and key values that mechanisms add.
+
+    closed: names of its parts whose rows are left out, so that what they are made of is not imported.
+    """
+    if (kind, offers, key_offers, closed) in _ROWS:
+        return _ROWS[kind, offers, key_offers, closed]
     columns = column_rows(kind.state, offers) if kind.state else {}
     quantities = [row.quantity for row in columns.values()] or [one.quantity for one in offers]
     definitions: dict[str, object] = {}
@@ -322,6 +405,8 @@ def result_rows(
         rows: Iterable[QuantityRow] = ()
         if isinstance(item, Heading):
             heading = item.text
+        elif isinstance(item, PartResults) and item.name in closed:
+            rows = ()
         elif isinstance(item, PartResults):
             rows = item.of_whole(result_rows(item.kind, offers, key_offers).key_values.values())
         elif isinstance(item, ExtremesOfColumns):
@@ -336,7 +421,7 @@ def result_rows(
     for offer in key_offers:
         if kind.command in offer.quantity.commands:
             found.append(QuantityRow(offer.quantity.printed_by(kind.command), offer.of))
-    return _ROWS.setdefault((kind, offers, key_offers), Rows(columns, _in_order(found)))
+    return _ROWS.setdefault((kind, offers, key_offers, closed), Rows(columns, _in_order(found)))
 
 
 def result(values: Array, count: int | None) -> Any:

@@ -13,20 +13,18 @@ from __future__ import annotations
 
 import math
 from functools import cache, cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices, Number
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.machine.turning import Swing
-from kurbel.numerics.arithmetic import every, some, where
+from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.quantity import Computed, Heading, key_value, value
-from kurbel.solver.chapters.coupling import ElasticCoupling, natural_order
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, part
@@ -35,8 +33,11 @@ from kurbel.solver.motion import every_dead_centre
 from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
 from kurbel.solver.state import State
 
+if TYPE_CHECKING:
+    from kurbel.solver.chapters.coupling import CouplingTorque, ElasticCoupling
+
 RIGID_ABOVE = 100.0
-"""Natural order above which a coupling counts as rigid: its torque differs from that of a rigid one by 1 in 10⁴."""
+"""Natural order above which a coupling counts as rigid: it amplifies the first harmonics by no more than 1 in 10⁴."""
 _MISSED = 1e-3
 """Relative deviation from the required δ above which there is a warning."""
 _LARGEST_EXPONENT = 709.7
@@ -45,6 +46,18 @@ _DOUBLINGS, _TRIALS = 30, 20
 """Largest numbers of doublings in the search for a flywheel that turns, and of secant steps for one with a given δ."""
 _CLOSE = 1e-13
 """Relative tolerance of δ in the search for the flywheel that gives it."""
+
+
+def _coupling_torque() -> type[CouplingTorque]:
+    from kurbel.solver.chapters.coupling import CouplingTorque
+
+    return CouplingTorque
+
+
+def _elastic_coupling() -> type[ElasticCoupling]:
+    from kurbel.solver.chapters.coupling import ElasticCoupling
+
+    return ElasticCoupling
 
 
 def _over_the_angle(
@@ -110,6 +123,14 @@ class TurningState(AtAngles):
         )
 
 
+class PistonWorks(NamedTuple):
+    """Indicated work of driving and of driven pistons, negative, and work of what rams drive, negative, in J."""
+
+    driving: Any
+    driven: Any
+    resisted: Any
+
+
 class MachineTurning(Results):
     """Key values of torque, flywheel and speed of the whole machine; `at(degrees)` gives the columns.
 
@@ -164,7 +185,7 @@ class MachineTurning(Results):
             case "alpha":
                 return None if self.speed is None else self.speed.alpha
             case "M_coupling":
-                return None if self.elastic is None else self.elastic.torque
+                return None if self.coupled is None else self.coupled.torque
         return self._from_others(column)
 
     def _at_crank(self, torque: Array) -> tuple[Pieces, Array] | None:
@@ -243,13 +264,85 @@ class MachineTurning(Results):
         "Power at the shaft, mean torque times nominal angular velocity",
         lambda one: one.M_mean * one.omega if one.turns and one.knows_mean else None,
     )
+    work_indicated = value(
+        "A_Σ",
+        "energy",
+        "Indicated work of all driving pistons per cycle; of all driven ones if none drives",
+        lambda one: one.indicated_work,
+        plain="A_sum",
+    )
+    power_indicated = value(
+        "N_Σ",
+        "power",
+        "Indicated power of the whole machine: of all driving pistons; of all driven ones if none drives",
+        lambda one: one.indicated_power,
+        plain="N_sum",
+    )
+    mechanical_efficiency = value(
+        "η_g",
+        "ratio",
+        "Mechanical efficiency of the whole machine: work at the shaft and of driven pistons over the work put in",
+        lambda one: one.useful_share,
+        unless=lambda one: (
+            one.useful_share is not None and every(abs(one.useful_share - 1) <= 1e-12)
+        ),
+    )
+
+    @cached_property
+    def piston_works(self) -> PistonWorks | None:
+        """The work of all cylinders per cycle of the machine; None without pistons."""
+        effort = self.effort
+        if effort.given is not None or effort.swing is not None:
+            return None
+        turns = effort.cycle / 360.0
+        works = list[PistonWorks]()
+        for cylinder in effort.cylinders:
+            if cylinder.work is None:
+                continue
+            cycles = turns / cylinder.drive.revolutions
+            resisted = cylinder.resistance_work
+            resisted = 0.0 if resisted is None else resisted * cycles
+            works.append(
+                PistonWorks(cylinder.work_driving * cycles, cylinder.work_driven * cycles, resisted)
+            )
+        return PistonWorks(*(total(*column) for column in zip(*works))) if works else None
+
+    @property
+    def indicated_work(self) -> Any:
+        """Indicated work in J per cycle of the driving pistons; of the driven ones if none drives."""
+        works = self.piston_works
+        return works and where(works.driving > 0, works.driving, works.driven)
+
+    @property
+    def indicated_power(self) -> Any:
+        """Indicated power in W."""
+        work = self.indicated_work
+        if work is None or not self.turns:
+            return None
+        seconds_times_omega = math.radians(self.effort.cycle)
+        return work * self.omega / seconds_times_omega
+
+    @property
+    def useful_share(self) -> Any:
+        """Work given off at the shaft and by driven pistons over that put in by driving ones and at the shaft."""
+        works, work = self.piston_works, self.work_shaft
+        if works is None or work is None:
+            return None
+        put_in = works.driving + where(work < 0, -work, 0.0)
+        given_off = where(work > 0, work, 0.0) - works.driven - works.resisted
+        if every(put_in == 0):
+            return None
+        return given_off / where(put_in == 0, math.nan, put_in)
 
     _searched = ExtremesOfColumns()
 
     @property
     def knows_mean(self) -> bool:
         """Whether the mean torque is known: of an effort given by its fluctuation of energy alone it is not."""
-        return not isinstance(self.machine.effort, Swing) or self.machine.effort.mean is not None
+        return (
+            not (self.machine.effort and self.machine.effort.alone)
+            or self.machine.effort.mean is not None
+        )
 
     @property
     def deficit(self) -> Any:
@@ -436,6 +529,8 @@ class MachineTurning(Results):
         if effort.swing is not None:
             return SwingLine(effort, self.excess.dE, flywheel)
         if coupling and not self._needs_no_inertia:
+            from kurbel.solver.chapters.coupling import ElasticCoupling, natural_order
+
             own = np.asarray(flywheel + effort.pieces.mean(effort.J_moving))
             if effort.count is None and not own[0]:
                 raise UsageError(
@@ -514,6 +609,8 @@ class MachineTurning(Results):
         own = np.asarray(needed + self.effort.pieces.mean(self.effort.J_moving))
         if not every(own != 0):
             return None
+        from kurbel.solver.chapters.coupling import natural_order
+
         found = natural_order(self.machine.coupling, own, self.omega)
         if not every(found > RIGID_ABOVE):  # in a batch machines with a rigid coupling are left out
             self.effort.refused |= found > RIGID_ABOVE
@@ -524,7 +621,20 @@ class MachineTurning(Results):
         """Whether the coupling counts as rigid, n_e > 100; of many machines, whether all do."""
         return self.natural_order is not None and not some(self.natural_order <= RIGID_ABOVE)
 
-    @part(ElasticCoupling)
+    @part(_coupling_torque, there=lambda turning: turning.machine.coupling is not None)
+    def coupled(self) -> CouplingTorque | None:
+        """The torque in the coupling; None without one, and without a speed line.
+
+        Raises NoSolutionError where no periodic motion is found.
+        """
+        coupling, line = self.machine.coupling, self.speed
+        if coupling and self.rigid and isinstance(line, RigidLine):
+            from kurbel.solver.chapters.coupling import StiffCoupling
+
+            return StiffCoupling(line, coupling.inertia)
+        return self.elastic
+
+    @part(_elastic_coupling, there=lambda turning: turning.machine.coupling is not None)
     def elastic(self) -> ElasticCoupling | None:
         """The elastic coupling; None for a rigid one, and without a speed line.
 
@@ -532,7 +642,7 @@ class MachineTurning(Results):
         """
         if self.machine.coupling is None or self.rigid:
             return None
-        return self.speed if isinstance(self.speed, ElasticCoupling) else None
+        return self.speed if isinstance(self.speed, _elastic_coupling()) else None
 
     # the required δ, compared with the speed line
 

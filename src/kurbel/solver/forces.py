@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from kurbel.machine.cylinder import may_lock, work_alike
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
+from kurbel.numerics.pieces import resolved
 from kurbel.quantity import Heading, Quantity, value, values_for
 from kurbel.solver.cycle import SampledCylinder, reversals, shared
 from kurbel.solver.drive import Drive
@@ -28,12 +29,27 @@ from kurbel.solver.figures import (
     result_rows,
 )
 from kurbel.solver.gas import PistonGas
-from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
 from kurbel.solver.newton import residual
 from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
-from kurbel.solver.valve import ValveGear
+
+if TYPE_CHECKING:
+    from kurbel.solver.indicated import Indicated
+    from kurbel.solver.valve import ValveGear
+
+
+def _indicated() -> type[Indicated]:
+    from kurbel.solver.indicated import Indicated
+
+    return Indicated
+
+
+def _valve_gear() -> type[ValveGear]:
+    from kurbel.solver.valve import ValveGear
+
+    return ValveGear
+
 
 SLIDING = {
     "crosshead": ("K", "at the crosshead"),
@@ -47,6 +63,7 @@ RUBBING = {
     "block": ("B", "at the block in the yoke"),
 }
 """Key of a coefficient of friction -> index of the symbols, and the place of the friction."""
+_PLACES = {**SLIDING, "constant": ("c", "by the constant force"), **RUBBING}
 
 
 class Brake(Results):
@@ -94,10 +111,28 @@ class Brake(Results):
 
 def share_of_driving(forces: CylinderForces, name: str) -> Any:
     """Return a work of friction over the work of the driving pistons; nan for machines of many without such pistons."""
-    lost, driving = forces.friction_works.get(name), forces.work_driving
+    return _over_driving(forces, forces.friction_works.get(name))
+
+
+def _over_driving(forces: CylinderForces, lost: Any) -> Any:
+    """Return a work in J over that of the driving pistons, None without either."""
+    driving = forces.work_driving
     if lost is None or driving is None or every(driving == 0):
         return None
     return lost / where(driving == 0, math.nan, driving)
+
+
+def _per_second(forces: CylinderForces, work: Any) -> Any:
+    """Return the power in W of a work in J per cycle; None without a speed, and at rest."""
+    speed = forces.drive.machine.speed
+    if work is None or speed is None or every(speed == 0):
+        return None
+    return work * speed / forces.drive.revolutions
+
+
+def _rubs_at_one_place(forces: CylinderForces) -> bool:
+    """Return whether friction is given at one place, so that what is lost there is all that is lost."""
+    return len(forces.friction_works) == 1
 
 
 class PistonWork(Results):
@@ -162,7 +197,10 @@ class CylinderForces(SampledCylinder, Results):
         """The rows that a machine with this mechanism may have, its pressures counted as in the machine file."""
         mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
         of_ram = not cylinder.pistons and bool(cylinder.ram_force or mechanism.quick_return)
-        return _rows(mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, bool(gas and gas.absolute))
+        absolute = bool(gas and gas.absolute)
+        return _rows(
+            mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, absolute, mechanism.guided, self.closed
+        )
 
     @property
     def _of(self) -> str:
@@ -186,15 +224,20 @@ class CylinderForces(SampledCylinder, Results):
             else Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
         )
 
-    @part(ValveGear)
+    @part(_valve_gear, there=lambda forces: forces.drive.cylinder.valve is not None)
     def valve_gear(self) -> ValveGear | None:
         """What the valve does."""
         cylinder = self.drive.cylinder
-        return ValveGear(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
+        return _valve_gear()(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
 
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")
-    A_crank = value("A_C", "area", "Piston area at the crank end")
+    A_crank = value(
+        "A_C",
+        "area",
+        "Piston area at the crank end",
+        repeats=lambda forces: forces.open_at_crank_end,
+    )
     p_max = value(
         "p_max", "pressure", "Largest gauge pressure on the cylinder's own piston", gauge=True
     )
@@ -207,6 +250,7 @@ class CylinderForces(SampledCylinder, Results):
         "Largest inertia force toward the shaft",
         lambda forces: largest(*forces.inertia_extremes) if forces.inertia_extremes else None,
         after="P_start_min",
+        repeats=lambda forces: forces.inertia_alone,
     )
     P_inertia_min = value(
         "P_b,min",
@@ -214,6 +258,7 @@ class CylinderForces(SampledCylinder, Results):
         "Largest inertia force away from the shaft, negative",
         lambda forces: smallest(*forces.inertia_extremes) if forces.inertia_extremes else None,
         after="P_start_min",
+        repeats=lambda forces: forces.inertia_alone,
     )
     p_guide_max = value(
         "p_g,max",
@@ -270,10 +315,18 @@ class CylinderForces(SampledCylinder, Results):
     power = value("N_i", "power", "Indicated power")
     mean_pressure = value("p_i", "pressure", "Mean indicated pressure of the cylinder's own piston")
 
-    @part(Indicated)
+    V_clearance = value(
+        "V_c", "volume", "Clearance volume of the head-end chamber", after="mean_pressure_exchange"
+    )
+
+    @part(
+        _indicated,
+        there=lambda forces: bool(forces.drive.own_gas and forces.drive.own_gas.has_trace),
+    )
     def indicated(self) -> Indicated | None:
         """Key values of the traces of the cylinder's own piston."""
-        return Indicated(self.drive.own_gas) if self.drive.own_gas else None
+        gas = self.drive.own_gas
+        return _indicated()(gas) if gas and gas.has_trace else None
 
     @part(Brake)
     def brake(self) -> Brake | None:
@@ -313,6 +366,24 @@ class CylinderForces(SampledCylinder, Results):
             else None
         ),
     )
+    friction_power = value(
+        "N_f",
+        "power",
+        "Power lost by friction: its work times cycles per second",
+        lambda forces: _per_second(forces, forces.friction_work),
+    )
+    friction_loss = value(
+        "e_f",
+        "ratio",
+        "Work lost by friction over that of the driving pistons",
+        lambda forces: _over_driving(forces, forces.friction_work),
+    )
+    friction_force_mean = value(
+        "F_m",
+        "force",
+        "Redtenbacher's mean crosshead friction ½ λ f |P|_m (D 6)",
+        lambda forces: forces.mean_crosshead_friction(),
+    )
     loss_of_sliding = values_for(
         SLIDING,
         "loss_*",
@@ -320,18 +391,32 @@ class CylinderForces(SampledCylinder, Results):
         "ratio",
         "Work lost * over that of the driving pistons",
         of=share_of_driving,
+        repeats=_rubs_at_one_place,
     )
     loss_crosshead_redtenbacher = value(
         "½ λ f",
         "ratio",
         "The same loss by Redtenbacher's mean over the rod angle (D 7)",
-        lambda forces: (
-            forces.mechanism.lam * forces.drive.crosshead_friction / 2
-            if "crosshead" in forces.friction_works
-            else None
-        ),
+        lambda forces: forces.of_crosshead(lambda lam, f: lam * f / 2),
         plain="lam f/2",
         after="loss_crosshead",
+        of_book=True,
+    )
+    loss_crosshead_logarithm = value(
+        "e_ln",
+        "ratio",
+        "The same loss with his cos β ≈ 1, sin β ≈ β: 1 − ln(1 + λ f)/(λ f) (D 5)",
+        lambda forces: forces.of_crosshead(mean_by_logarithm),
+        after="loss_crosshead",
+        of_book=True,
+    )
+    loss_crosshead_integral = value(
+        "e_β",
+        "ratio",
+        "The same loss by his integral over the rod angle β from 0 to λ, without approximation (D 5)",
+        lambda forces: forces.of_crosshead(mean_by_integral),
+        after="loss_crosshead",
+        of_book=True,
     )
     pin_work = values_for(
         RUBBING,
@@ -340,6 +425,7 @@ class CylinderForces(SampledCylinder, Results):
         "energy",
         "Work lost * per cycle",
         of=lambda forces, name: forces.friction_works.get(name),
+        repeats=_rubs_at_one_place,
     )
     pin_loss = values_for(
         RUBBING,
@@ -348,6 +434,16 @@ class CylinderForces(SampledCylinder, Results):
         "ratio",
         "Work lost * over that of the driving pistons",
         of=share_of_driving,
+        repeats=_rubs_at_one_place,
+    )
+    power_of_places = values_for(
+        _PLACES,
+        "friction_power_*",
+        "N_f,*",
+        "power",
+        "Power lost *",
+        of=lambda forces, name: _per_second(forces, forces.friction_works.get(name)),
+        repeats=_rubs_at_one_place,
     )
     _checks = Heading("Checks")
     energy_residual = value(
@@ -386,13 +482,15 @@ class CylinderForces(SampledCylinder, Results):
             highest = largest(*(end.highest for end in (gas.head, gas.crank) if end))
             found["p_max"] = Extreme(highest.value + gas.base, highest.degrees)
             found["mean_pressure"] = gas.work / gas.swept_volume
+            volume = gas.clearance_volumes[0] if gas.head else 0.0
+            if some(volume != 0):  # of many machines nan where it is not known
+                found["V_clearance"] = where(volume == 0, math.nan, volume)
         if drive.gas:
-            each, speed = [gas.work for gas in drive.gas], drive.machine.speed
+            each = [gas.work for gas in drive.gas]
             found["work"] = work = total(*(one for gas in drive.gas for one in gas.works))
             found["work_driving"] = total(*(where(one > 0, one, 0.0) for one in each))
             found["work_driven"] = total(*(where(one < 0, one, 0.0) for one in each))
-            if speed is not None and not every(speed == 0):
-                found["power"] = work * speed / drive.revolutions
+            found["power"] = _per_second(self, work)
         traced = [gas.traced for gas in drive.gas if gas.traced]
         if own := math.fsum(work for work, _ in traced):
             found["work_sensitivity"] = (
@@ -425,7 +523,27 @@ class CylinderForces(SampledCylinder, Results):
             or not self.mechanism.has_rod
         )
 
+    @property
+    def open_at_crank_end(self) -> bool:
+        """Whether the piston is a trunk piston, whose crank end has the ambient pressure."""
+        indicator = self.drive.cylinder.pistons[0].indicator
+        return indicator is not None and indicator.crank_end is None
+
+    @property
+    def inertia_alone(self) -> bool:
+        """Whether the piston force is that of inertia alone."""
+        return self.drive.has_inertia and self.samples.P_start is None
+
     # extremes of the columns
+
+    def repeats(self, column: str) -> bool:
+        """Return whether people read the extremes of a column in those of the piston force, or they are 0."""
+        if super().repeats(column):
+            return True
+        piston_force, force = self.extremes_of("P"), self.extremes_of(column)
+        if column == "P" or piston_force is None or force is None:
+            return False
+        return all(_are_equal(one, other) for one, other in zip(force, piston_force))
 
     @property
     def inertia_extremes(self) -> list[Extreme]:
@@ -548,6 +666,32 @@ class CylinderForces(SampledCylinder, Results):
             )
         return found
 
+    def of_crosshead(self, formula: Callable[[Number, Number], Number]) -> Number | None:
+        """Return a formula of the books in λ = R/L and f; None without friction at the crosshead."""
+        if "crosshead" not in self.friction_works:
+            return None
+        return formula(self.mechanism.lam, self.drive.crosshead_friction)
+
+    def mean_crosshead_friction(self) -> Number | None:
+        """Return ½ λ f P_m in N (D 6), P_m the mean magnitude of the piston force over the path of the crosshead."""
+        share, P = (
+            self.loss_crosshead_redtenbacher,
+            self.sampled("P") if self.drive.has_force else None,
+        )
+        if share is None or P is None:
+            return None
+        # |P| |dx| has kinks where P changes sign; the slope does only at the ends of pieces
+        P_and_slope = np.stack((P, self.pieces.filled(self.samples.slope)))
+        pieces, (work,), _ = resolved(
+            self.pieces,
+            P_and_slope,
+            P[None],
+            self.pieces.largest(P[None]),
+            lambda _, parts: np.abs(parts[:1] * parts[1:]),
+        )
+        P_m = self.result(pieces.integral(work)) / self.drive.path
+        return share * P_m
+
     def energy_balance(self) -> Number | None:
         """Return the energy balance (∮ T R dφ − `work_left`) over ∮ |T| R dφ: quadrature against work in closed form.
 
@@ -565,17 +709,58 @@ class CylinderForces(SampledCylinder, Results):
         )
 
 
+def mean_by_logarithm(lam: Number, f: Number) -> Number:
+    """Return Redtenbacher's mean of the friction over the piston force with cos β ≈ 1, sin β ≈ β: 1 − ln(1 + λf)/(λf).
+
+    >>> f"{mean_by_logarithm(1 / 6, 0.1):.4%}"
+    '0.8242%'
+    """
+    product = np.asarray(lam * f, dtype=float)
+    divisor = np.where(product == 0, 1.0, product)
+    return _float_or_array(1 - np.where(product == 0, 1.0, np.log1p(divisor) / divisor))
+
+
+def mean_by_integral(lam: Number, f: Number) -> Number:
+    """Return the mean of f sin β/(cos β + f sin β) over the rod angle β from 0 to λ (D 5).
+
+    (f/(λ (1 + f²))) (f λ − ln(cos λ + f sin λ)).
+
+    >>> f"{mean_by_integral(1 / 6, 0.1):.4%}"
+    '0.8280%'
+    """
+    widest = np.asarray(lam, dtype=float)
+    divisor = np.where(widest == 0, 1.0, widest)
+    # cos β − 1 without cancellation
+    lost = np.log1p(f * np.sin(widest) - 2 * np.sin(widest / 2) ** 2)
+    return _float_or_array(f * (f * widest - lost) / (divisor * (1 + f * f)))
+
+
+def _are_equal(force: Extreme, other: Extreme) -> bool:
+    """Return whether two extremes of one machine are equal but for rounding, at the same angle."""
+    same_value = math.isclose(force.value, other.value, rel_tol=1e-12)
+    return same_value and math.isclose(force.degrees, other.degrees, abs_tol=1e-9)
+
+
+def _float_or_array(values: Array) -> Number:
+    return float(values) if np.ndim(values) == 0 else values
+
+
 @cache
 def _rows(
-    offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: bool, absolute: bool
+    offers: tuple[Offer, ...],
+    key_offers: tuple[KeyOffer, ...],
+    of_ram: bool,
+    absolute: bool,
+    guided: bool,
+    closed: frozenset[str],
 ) -> Rows:
-    """Return the rows of cylinders with these quantities of mechanisms: of a ram without piston, or absolute."""
-    known = result_rows(CylinderForces, offers, key_offers)
-    return (
-        known.changed(Quantity.of_ram if of_ram else Quantity.absolute)
-        if of_ram or absolute
-        else known
-    )
+    """Return the rows of cylinders with these quantities of mechanisms, in the words for a machine of their kind."""
+    rows = result_rows(CylinderForces, offers, key_offers, closed)
+    if of_ram:
+        rows = rows.changed(Quantity.of_ram)
+    elif absolute:
+        rows = rows.changed(Quantity.absolute)
+    return rows if guided else rows.changed(Quantity.without_guide)
 
 
 def _sum_of_all(values: Sequence[Any]) -> Any:

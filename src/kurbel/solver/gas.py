@@ -17,25 +17,26 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Union
+from typing import TYPE_CHECKING, ClassVar, Literal, Union
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices, Number
-from kurbel.crank_angle import within_cycle
+from kurbel.crank_angle import CYCLES, within_cycle
 from kurbel.errors import UsageError
 from kurbel.machine.batch import changed, taken, varies
-from kurbel.machine.cylinder import CYCLES
-from kurbel.machine.ideal_cards import Compressor, IdealCard, Otto, Steam, after_polytrope
-from kurbel.machine.indicator import STROKES, Card, Rectangle
+from kurbel.machine.indicator import STROKES, Card, Chamber, Rectangle
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.arithmetic import some, spread, total
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
 from kurbel.solver.figures import result
-from kurbel.traces.correct import Setting, Trace
-from kurbel.traces.pressure import TracePressure
+
+if TYPE_CHECKING:
+    from kurbel.machine.ideal_cards import IdealCard
+    from kurbel.traces.pressure import TracePressure
 
 _NO_WIDTH = 1e-10
 """Degrees of crank angle: a segment over less is a jump."""
@@ -133,70 +134,13 @@ def process_in(
                 (stroke, float(stroke % 2), pressure, float(1 - stroke % 2), pressure, 0.0)
             )
     else:
-        clearance, lines = chamber.clearance, _ideal(chamber, lift, four_stroke=cycle == 720.0)
-        if (
-            not isinstance(chamber, Compressor) and chamber.diagram_factor != 1
-        ):  # p V^n = const about another vacuum
-            factor, back = chamber.diagram_factor, chamber.back_pressure
-            lift = factor * lift - (1 - factor) * back
-            lines = [
-                (stroke, z, back + factor * (p - back), next_z, back + factor * (next_p - back), n)
-                for stroke, z, p, next_z, next_p, n in lines
-            ]
-    return Process(np.array([line for line in lines if line[3] != line[1]]), lift, clearance)
+        from kurbel.solver.ideal_process import ideal_lines
 
-
-def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[ProcessLine]:
-    """Return the lines of an ideal card; those of an engine with exhaust and intake in four strokes.
-
-    lift: pressure in Pa to be added for absolute pressures.
-    """
-    clearance, lines = card.clearance, list[ProcessLine]()
-
-    def run(stroke: int, z: float, p: float, next_z: float, exponent: float = 0.0) -> float:
-        """Draw a line of constant pressure, or along p V^n = const, and return the pressure at its end."""
-        next_p = p
-        if exponent and next_z != z:  # without a distance there may be no volume
-            next_p = after_polytrope(p + lift, z + clearance, next_z + clearance, exponent) - lift
-        lines.append((stroke, z, p, next_z, next_p, exponent))
-        return next_p
-
-    if isinstance(card, Steam):  # admission, expansion, exhaust; exhaust, compression
-        assert card.cut_off is not None
-        run(0, 0.0, card.admission, card.cut_off)
-        run(0, card.cut_off, card.admission, card.release, card.exponent)
-        run(0, card.release, card.exhaust, 1.0)
-        run(1, 1.0, card.exhaust, card.compression)
-        compressed = run(1, card.compression, card.exhaust, card.lead, card.exponent)
-        lines.append((1, card.lead, compressed, 0.0, card.admission, 0.0))
-    elif isinstance(card, Compressor) and card.unloaded:
-        run(0, 0.0, card.suction, 1.0)
-        run(1, 1.0, card.suction, 0.0)
-    elif isinstance(
-        card, Compressor
-    ):  # expansion of the clearance gas, suction; compression, delivery
-        ratio, expansion = (
-            math.log((card.delivery + lift) / (card.suction + lift)),
-            card.of_expansion,
+        clearance, (lift, lines) = (
+            chamber.clearance,
+            ideal_lines(chamber, lift, four_stroke=cycle == 720.0),
         )
-        fills = clearance * math.expm1(ratio / expansion)
-        empties = 1.0 + (1.0 + clearance) * math.expm1(-ratio / card.exponent)
-        lines.append((0, 0.0, card.delivery, fills, card.suction, expansion))
-        run(0, fills, card.suction, 1.0)
-        lines.append((1, 1.0, card.suction, empties, card.delivery, card.exponent))
-        run(1, empties, card.delivery, 0.0)
-    else:
-        compressed = run(3 if four_stroke else 1, 1.0, card.intake, 0.0, card.exponent)
-        if isinstance(card, Otto):
-            run(0, 0.0, card.peak, 1.0, card.expansion_exponent)
-        else:  # injection at constant pressure
-            burning = compressed if card.peak is None else card.peak
-            run(0, 0.0, burning, card.cut_off)
-            run(0, card.cut_off, burning, 1.0, card.expansion_exponent)
-        if four_stroke:
-            run(1, 1.0, card.back_pressure, 0.0)
-            run(2, 0.0, card.intake, 1.0)
-    return sorted(lines, key=lambda line: line[0])
+    return Process(np.array([line for line in lines if line[3] != line[1]]), lift, clearance)
 
 
 # over the crank angle
@@ -205,9 +149,11 @@ def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[ProcessLine]
 class CardPressure:
     """Gauge pressure in one chamber from a process over the stroke, or in those of many machines.
 
-    mirrored: the pressure at the other end, which has the same process. steep: whether a line is so steep that the
-    rounding of z counts; starts: where lines begin.
+    traced: it is no trace. mirrored: the pressure at the other end, which has the same process. steep: whether a
+    line is so steep that the rounding of z counts; starts: where lines begin.
     """
+
+    traced: ClassVar[Literal[False]] = False
 
     def __init__(
         self,
@@ -377,7 +323,18 @@ def _over_the_angle(
     return machine, np.stack((angles, angles[following], *lines[wide][order, 1:].T))
 
 
-Pressure = Union[CardPressure, TracePressure]
+Pressure = Union[CardPressure, "TracePressure"]
+
+
+def _pressure(
+    chamber: Chamber, setting: Setting, count: int | None, mirrored: CardPressure | None
+) -> Pressure:
+    """Return the pressure over the crank angle that a card or a trace shows."""
+    if chamber.traced:
+        from kurbel.traces.pressure import TracePressure
+
+        return TracePressure(chamber, setting)
+    return CardPressure(chamber, setting, count, mirrored)
 
 
 class PistonGas:
@@ -416,15 +373,11 @@ class PistonGas:
         self.absolute, self.base = indicator.absolute, at_head.base
         self.head: Pressure | None = None
         self.crank: Pressure | None = None
-        if isinstance(indicator.head_end, Trace):
-            self.head = TracePressure(indicator.head_end, at_head)
-        elif indicator.head_end is not None:
-            self.head = CardPressure(indicator.head_end, at_head, count, None)
-        if isinstance(indicator.crank_end, Trace):
-            self.crank = TracePressure(indicator.crank_end, at_crank)
-        elif indicator.crank_end is not None:
+        if indicator.head_end is not None:
+            self.head = _pressure(indicator.head_end, at_head, count, None)
+        if indicator.crank_end is not None:
             same = self.head if at_crank.mirrored and isinstance(self.head, CardPressure) else None
-            self.crank = CardPressure(indicator.crank_end, at_crank, count, same)
+            self.crank = _pressure(indicator.crank_end, at_crank, count, same)
 
         self.areas: tuple[Number, Number] = (
             piston.head_area * abs(ratio),
@@ -432,7 +385,8 @@ class PistonGas:
         )
         both = zip((self.head, self.crank), self.areas)
         self.ends = [(end, area) for end, area in both if end is not None]
-        self._traces = [(end, area) for end, area in self.ends if isinstance(end, TracePressure)]
+        self._traces = [(end, area) for end, area in self.ends if end.traced]
+        self.has_trace = bool(self._traces)
         self.swept_volume: Number = sum(area for _, area in self.ends) * self.stroke
         turns = cycle * np.arange(repeats)
         self.starts = [

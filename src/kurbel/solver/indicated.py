@@ -1,13 +1,12 @@
 """Key values of a measured trace besides forces: exponents, the pumping loop, and the spread of its cycles."""
 
-import math
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.numerics.arithmetic import some, unless_cancelled, where
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity, value
 from kurbel.solver.figures import Results
@@ -40,7 +39,6 @@ class Indicated(Results):
 
     mean_pressure_gross = value("p_i,g", "pressure", "Gross part of p_i: compression and expansion")
     mean_pressure_exchange = value("p_i,w", "pressure", "Pumping part of p_i: exhaust and intake")
-    V_clearance = value("V_c", "volume", "Clearance volume of the head-end chamber")
     n_compression = value(
         "n_c", "ratio", "Exponent of p V^n over the compression, 90 to 40 deg before its end"
     )
@@ -66,15 +64,12 @@ class Indicated(Results):
 
     def __init__(self, gas: PistonGas) -> None:
         self.gas = gas
-        self._traces = [end for end in (gas.head, gas.crank) if isinstance(end, TracePressure)]
+        self._traces = [end for end in (gas.head, gas.crank) if end and end.traced]
 
     @cached_property
     def answers(self) -> dict[str, object]:
         """The key values; standard deviations are those of a sample, with m − 1."""
         found = dict[str, object]()
-        volume = self.gas.clearance_volumes[0] if self.gas.head else 0.0
-        if some(volume != 0):  # of many machines nan where it is not known
-            found["V_clearance"] = where(volume == 0, math.nan, volume)
         if not self._traces:
             return found
 
@@ -92,7 +87,7 @@ class Indicated(Results):
         if len(self._traces) == 1:
             (one,) = self._traces
             after, absolute = (
-                one.setting.from_dead_centre(one.trace),
+                one.trace.from_dead_centre(one.setting),
                 one.pressures + one.setting.lift,
             )
             for id, stretch in (("n_compression", COMPRESSION), ("n_expansion", EXPANSION)):

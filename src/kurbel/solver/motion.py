@@ -30,7 +30,7 @@ class MotionColumns(AtAngles):
 
     rod_angle: sin ψ and cos ψ, None without a rod; posed: the crank angles with them; rod_slope: dψ/dφ, 0 without a
     rod; displacement: in m from the inner dead centre; slope, curvature: dx/dφ in m per radian and d²x/dφ²; of what
-    only swings, of θ; direction: +1 on the outstroke and for what turns on, −1 on the return stroke.
+    only swings, of θ.
     """
 
     commands: ClassVar[tuple[str, ...]] = ("motion", "forces")
@@ -122,8 +122,14 @@ class MotionColumns(AtAngles):
         self.rod_angle: Any = mechanism.rod_angle(angle)
         self.angle, self.posed = angle, angle._replace(rod=self.rod_angle)
         self._of_point = of_point
+
+    @cached_property
+    def direction(self) -> Array:
+        """+1 on the outstroke and for what turns on, −1 on the return stroke."""
+        mechanism = self.mechanism
         inner, outer = (0.0, 360.0) if mechanism.turns else mechanism.dead_centres()
-        self.direction = np.where(np.mod(within - inner, 360.0) < outer - inner, 1.0, -1.0)
+        is_outstroke = np.mod(self.within - inner, 360.0) < outer - inner
+        return np.where(is_outstroke, 1.0, -1.0)
 
     @property
     def coordinate(self) -> Number:
@@ -168,6 +174,11 @@ def _equal_strokes(motion: Motion) -> bool:
     return every(abs(motion.time_ratio - 1) <= 1e-12)
 
 
+def _straight(motion: Motion) -> bool:
+    """Return whether the dead centres are at 0 and 180 degrees, where everybody expects them."""
+    return every(motion.phi_idc == 0) and every(motion.phi_odc == 180.0)
+
+
 class Motion(Results):
     """What the mechanism does at a speed of rotation: key values in SI.
 
@@ -180,8 +191,8 @@ class Motion(Results):
 
     _motion = Heading("Motion")
     stroke = value("s", "length", "Stroke")
-    phi_idc = value("φ_i", "angle", "Crank angle of the inner dead centre")
-    phi_odc = value("φ_o", "angle", "Crank angle of the outer dead centre")
+    phi_idc = value("φ_i", "angle", "Crank angle of the inner dead centre", repeats=_straight)
+    phi_odc = value("φ_o", "angle", "Crank angle of the outer dead centre", repeats=_straight)
     phi_work = value(
         "φ_w",
         "angle",
@@ -230,6 +241,7 @@ class Motion(Results):
         lambda motion: motion.roots_of_the_book(),
         listed=True,
         on_request=("forces",),
+        of_book=True,
     )
 
     def __init__(self, mechanism: Mechanism, speed: float | None, count: int | None = None) -> None:

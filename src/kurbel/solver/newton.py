@@ -90,7 +90,7 @@ def residual(cylinder: SampledCylinder) -> float | None:
     left = [given - gravity.real * parts - rubs - push + parts * moved * square]
     # the shaft: T R less the moments in crank pin and journals less M, over R
     lost = state.rubbing.at_crank + state.rubbing.journals if state.rubbing else 0.0
-    left.append(state.T - (lost + state.M) / mechanism.crank)
+    left.append(state.tangential_at_pin - (lost + state.M) / mechanism.crank)
     energy = 0.0
     if motion:
         rod = _rod_of(drive)

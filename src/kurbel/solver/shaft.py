@@ -38,26 +38,10 @@ from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import magnitude, some, where
+from kurbel.solver.vector import Force
 
 _ALIKE = 1e-9
 """Degrees, and metres, by which throws differ by rounding only."""
-
-
-Force = Any
-"""A force D + iT in N, or the moments of such forces in N m: complex, a number or an array (…). mypy has no one type
-for it: the sum of a complex128 and a float is to it a complex number of any precision."""
-
-
-class Vector(NamedTuple):
-    """A force in N along D and along T."""
-
-    D: Number
-    T: Number
-
-    @property
-    def complex(self) -> Force:
-        """D + iT."""
-        return self.D + 1j * self.T
 
 
 # one throw

@@ -303,3 +303,13 @@ class RigidLine(SpeedLine):
 
         pieces, (values,) = refined(self.pieces, sample)
         return pieces, np.where(pieces.of(self.failed), 0.0, values)
+
+    def torque_beyond(self, inertia: Number) -> tuple[Pieces, Array]:
+        """Return samples of J₂ α + M_load in N m: what passes to the load and an inertia J₂ in kg m² that it drives."""
+        pieces, alpha = self.alpha
+        effort = self.effort
+        load = pieces.carried(effort.load, effort.pieces)
+        if self.law:
+            u = pieces.carried(self.u, self.pieces)
+            load = load + self.law.rise(u * (2 + u), pieces)[0]
+        return pieces, pieces.of(inertia) * alpha + load

@@ -10,6 +10,9 @@ stroke line:
     N (cos ψ + f sin ψ sgn c sgn N) = P sin ψ + G cos ψ        D 3 with signs; f = 0: N = P tan ψ + G (R 301)
     S = P/cos ψ (R 300)   D = P cos(φ+ψ)/cos ψ (R 302)   T = P sin(φ+ψ)/cos ψ (R 303), by virtual work: T R dφ = P dx
 
+T is M/R throughout: where pins and journals rub, it lacks their moments of friction over R, the force at the pin, T_Z,
+does not.
+
 The P of N is less the friction of the rings, that of S, D and T less all friction along the stroke line. The couple of
 an exact rod and the friction in the pins of a rod are balanced by side forces on guide and crank pin.
 
@@ -32,7 +35,6 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.numerics.arithmetic import some, total
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
@@ -40,7 +42,7 @@ from kurbel.quantity import QuantityRow, column, value
 from kurbel.solver.chambers import Chambers
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
-from kurbel.solver.shaft import Vector
+from kurbel.solver.vector import Vector
 
 
 class FrictionMoments(NamedTuple):
@@ -250,12 +252,14 @@ class State(Chambers):
     def S_crank(self) -> Array | None:
         """Force along an exact rod at the crank pin, compression positive.
 
-        T sin(φ+ψ) + D cos(φ+ψ).
+        T sin(φ+ψ) + D cos(φ+ψ), with T at the pin.
         """
         if self.P is None or self.drive.rod is None:
             return None
         (sin_psi, cos_psi), sin, cos = self.rod_angle, self.angle.sin, self.angle.cos
-        return self.T * (sin * cos_psi + cos * sin_psi) + self.D * (cos * cos_psi - sin * sin_psi)
+        return self.tangential_at_pin * (sin * cos_psi + cos * sin_psi) + self.D * (
+            cos * cos_psi - sin * sin_psi
+        )
 
     @cached_property
     def rod_couple(self) -> Number:
@@ -384,11 +388,12 @@ class State(Chambers):
     @cached_property
     def drag_of_guides(self) -> Number:
         """Friction 2 f_g |P R sin φ|/l_g in N of the guides of a Scotch yoke, magnitude; 0 for another mechanism."""
-        yoke, (_, f) = self.mechanism, self.drive.yoke_friction
-        if not isinstance(yoke, ScotchYoke) or not some(f != 0):
+        _, f = self.drive.yoke_friction
+        if not some(f != 0):
             return 0.0
-        pair = yoke.guide_pair_factor(self.angle)
-        assert pair is not None
+        pair = self.mechanism.guide_pair_factor(self.angle)
+        if pair is None:
+            return 0.0
         return np.abs(self.after_steady_friction * pair) * (2 * f)
 
     @column("N", "force", extremes=("forces",), called="guide force", peak=True)
@@ -492,16 +497,37 @@ class State(Chambers):
             self.rod_couple
         ) * self.angle.cos
 
-    @column("T", "force", extremes=("forces",), called="tangential force", peak=True)
-    def T(self) -> Any:
-        """Tangential force at the crank pin, positive when it drives.
-
-        R 303: T R dφ = P dx.
-        """
+    @cached_property
+    def _pushed_along(self) -> Any:
+        """Tangential force in N before friction in pins, journals and the block of a yoke; None without a force."""
         if self._output is None:
             return None
-        push = self._output * (self.slope / self.mechanism.crank) + self._rod_tangential
-        return push - self.angle.cos * self._friction_side
+        return self._output * (self.slope / self.mechanism.crank) + self._rod_tangential
+
+    @column("T", "force", extremes=("forces",), called="tangential force", peak=True)
+    def T(self) -> Any:
+        """Tangential force M/R: the torque on the shaft over the crank radius, positive when it drives.
+
+        R 303: T R dφ = P dx, less the friction of pins and journals, where it is given.
+        """
+        if self._pushed_along is None:
+            return None
+        return self._pushed_along - sum(self.losses.values(), start=0.0) / self.mechanism.crank
+
+    @column("T_Z", "force")
+    def T_pin(self) -> Any:
+        """Tangential force of the rod on the crank pin, the T of the books (R 303), where it is not M/R.
+
+        It lacks the moments of friction in pin and journals, which T includes.
+        """
+        return self.tangential_at_pin if self.drive.pin_friction else None
+
+    @cached_property
+    def tangential_at_pin(self) -> Any:
+        """Tangential force in N of the rod on the crank pin; None without a force."""
+        if self._pushed_along is None:
+            return None
+        return self._pushed_along - self.angle.cos * self._friction_side
 
     F_friction = value(
         "F_f",
@@ -513,6 +539,21 @@ class State(Chambers):
             else state.filled(state.drag * -state.direction)
         ),
     )
+
+    @column("N_f", "power")
+    def friction_power(self) -> Number | None:
+        """Power lost by friction at all places that are given."""
+        omega = self.omega
+        if (
+            self.P is None
+            or self.drive.cylinder.friction is None
+            or self.c is None
+            or omega is None
+        ):
+            return None
+        sliding = self.drag * self.direction * self.c
+        rubbing = sum(self.losses.values(), start=0.0) * omega
+        return self.filled(sliding + rubbing)
 
     @cached_property
     def along_rod(self) -> Number:
@@ -535,7 +576,7 @@ class State(Chambers):
             lost["block"] = self._friction_side * self.angle.cos * self.mechanism.crank
         return lost
 
-    @column("M", "torque")
+    @column("M", "torque", repeats=lambda forces: True)  # R T
     def M(self) -> Any:
         """Torque on the shaft.
 
@@ -549,7 +590,7 @@ class State(Chambers):
 
 def on_pin(state: State) -> Vector:
     """Return the force of the rod on the crank pin in N, in the frame of the throw."""
-    return Vector(state.D - state.drive.rod_centrifugal_force, state.T)
+    return Vector(state.D - state.drive.rod_centrifugal_force, state.tangential_at_pin)
 
 
 def on_crosshead_pin(state: State) -> Vector:

@@ -29,6 +29,7 @@ from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.tables.named_values import Choice, choices_in
 from kurbel.tables.tables import (
+    BEFORE,
     Column,
     InputFile,
     KeyValue,
@@ -62,9 +63,10 @@ class Subject(NamedTuple):
 
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
     state with the columns, None without columns; of: the cylinder that a pin belongs to; pistons: those of a cylinder
-    whose rod has several; whole: it is the whole machine. The rest is computed only for a report, and
-    once: left_out, warnings, tables. part: its name in columns where `name` is a number that may mean another part of
-    another machine; where: what it is next to, which tells parts of one number from one another.
+    whose rod has several; whole: it is the whole machine; idle: why its table would be one of no
+    results, so that people get a sentence instead. The rest is computed only for a report, and once:
+    left_out, warnings, tables. part: its name in columns where `name` is a number that may mean another
+    part of another machine; where: what it is next to, which tells parts of one number from one another.
     """
 
     name: str
@@ -76,6 +78,7 @@ class Subject(NamedTuple):
     of: str = ""
     pistons: "Sequence[Subject]" = ()
     whole: bool = False
+    idle: str = ""
     part: str = ""
     where: str = ""
 
@@ -113,7 +116,9 @@ class Subject(NamedTuple):
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, object]]:
         """Yield its key values of a command in SI, without those that are printed only on request."""
-        for quantity, of, unless in self.results.rows.key_values.values() if self.results else ():
+        for quantity, of, unless, _ in (
+            self.results.rows.key_values.values() if self.results else ()
+        ):
             printed = command in quantity.commands and command not in quantity.on_request
             if (
                 printed
@@ -121,6 +126,18 @@ class Subject(NamedTuple):
                 and (value := of(self.results)) is not None
             ):
                 yield quantity, value
+
+    def is_minor(self, id: str, compare: bool) -> bool:
+        """Return whether a key value is for programs only, as people read it elsewhere.
+
+        compare: with the approximations of the books.
+        """
+        row = self.results.rows.key_values.get(id) if self.results else None
+        if row is None:
+            return False
+        if row.quantity.of_book:
+            return not compare
+        return row.repeats is not None and bool(row.repeats(self.results))
 
 
 def equal_parts(subjects: Sequence[Subject], command: str) -> list[list[Subject]]:
@@ -198,9 +215,7 @@ def report_on(
         Part(
             one.name,
             columns,
-            tuple(shown_key_values(one.key_values(frame.command), frame.system))
-            if with_values
-            else (),
+            tuple(_key_values(one, frame)) if with_values else (),
             tuple(one.left_out) if frame.prose else (),
             tuple(one.warnings) if frame.prose else (),
             tables,
@@ -215,7 +230,8 @@ def report_on(
         and frame.command != "balance"
         and not any(id.endswith("_book") for id in printed)
     )
-    added = ([_UNCOMPARED] if uncompared else []) + [f"{why}." for why in nowhere]
+    idle = [] if frame.columns else [f"{one.name}: {one.idle}" for one, *_ in having if one.idle]
+    added = ([_UNCOMPARED] if uncompared else []) + [f"{why}." for why in nowhere] + idle
     return Report(
         f"{machine.name}. {title}",
         frame.command,
@@ -250,7 +266,7 @@ def _report_on_names(
             continue
         ids = {quantity.id for quantity, _ in chosen}
         given |= {choice for choice in choices if choice.id in ids and choice.is_of(subject)}
-        key_values = tuple(shown_key_values(chosen, frame.system))
+        key_values = tuple(_with_sides(subject, shown_key_values(chosen, frame.system), chosen))
         part = Part(subject.name, (), key_values, (), tuple(subject.warnings), of=subject.of)
         if subject.whole:
             whole = part
@@ -277,6 +293,58 @@ def _lacking(choice: Choice, command: str) -> str:
     quantity = every_quantity().key_values(command)[choice.id]
     owner = {"": "this machine", MACHINE: "the whole machine"}.get(choice.scope, choice.scope)
     return f"{owner} has no {choice.id}: {quantity.text[:1].lower()}{quantity.text[1:]}; kurbel check shows why"
+
+
+def _key_values(subject: Subject, frame: Frame) -> Iterator[KeyValue]:
+    """Yield the key values of a subject, those marked that are for programs only."""
+    values = list(subject.key_values(frame.command))
+    for key_value in _with_sides(subject, shown_key_values(values, frame.system), values):
+        yield key_value._replace(minor=subject.is_minor(key_value.id, frame.compare))
+
+
+_EXTREME = re.compile(r"(.+)_(?:max|min|peak)")
+_OF_SEVERAL = {"p_max": ("p_head", "p_crank")}
+"""Key value -> the columns of which it is the extreme, where its id does not name it."""
+_ANOTHER = 1e-6
+"""Relative difference from which a value of a column is not the extreme, but what follows a jump."""
+
+
+def _with_sides(
+    subject: Subject, shown_values: Sequence[KeyValue], values: Sequence[tuple[Quantity, object]]
+) -> Iterator[KeyValue]:
+    """Yield key values as shown, those marked that are the limit of a column before a jump; values: the same in SI."""
+    before = before_jumps(subject, values)
+    for key_value in shown_values:
+        yield key_value._replace(side=BEFORE if key_value.id in before else "")
+
+
+def before_jumps(subject: Subject, values: Iterable[tuple[Quantity, object]]) -> set[str]:
+    """Return the ids of those key values that are the limit of a column before a jump: just after it is another value.
+
+    values: key values of the subject in SI.
+    """
+    extremes = {quantity.id: value for quantity, value in values if isinstance(value, Extreme)}
+    angles = np.array([extreme.degrees for extreme in extremes.values()], dtype=float)
+    before = set[str]()
+    if subject.at and len(angles):
+        state = subject.at(angles)
+        for number, (id, extreme) in enumerate(extremes.items()):
+            after = [values[number] for values in _columns_of(id, state)]
+            size = abs(extreme.value)
+            # of a largest magnitude the sign is not known
+            same = [abs(abs(value) - size) <= _ANOTHER * max(abs(value), size) for value in after]
+            if after and not any(same):
+                before.add(id)
+    return before
+
+
+def _columns_of(id: str, state: AtAngles) -> Iterator[Array]:
+    """Yield the columns (n,) whose extreme a key value is."""
+    named = _EXTREME.fullmatch(id)
+    for column in _OF_SEVERAL.get(id, (named[1],) if named else ()):
+        values = state[column]
+        if values is not None:
+            yield np.broadcast_to(values, np.shape(state["phi"]))
 
 
 class Functions(NamedTuple):
@@ -330,9 +398,53 @@ def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
         # what adds nothing to forces may be what motion is about
         elsewhere = subject.results and subject.results.command != frame.command
         chosen = [one for one in usual if elsewhere or subject.is_printed(one)]
-    return shown_columns(
+    columns = shown_columns(
         subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system
+    )
+    if frame.columns:
+        return columns, ""
+    minor = (
+        set(known) if subject.idle else _minor_columns(subject, [column.id for column in columns])
+    )
+    wanted = {quantity.id for quantity in added}
+    return tuple(
+        one._replace(minor=one.id in minor and one.id not in wanted) for one in columns
     ), ""
+
+
+def _minor_columns(subject: Subject, ids: Iterable[str]) -> set[str]:
+    """Return those of these columns that tell people nothing: 0 at every angle, or a force that another row has, too.
+
+    Of equal forces the first one stays, but the piston force in any case.
+    """
+    assert subject.at is not None
+    state, minor = subject.at(_EVERYWHERE), set[str]()
+    forces = dict[str, Array]()
+    for id in ids:
+        row = state.rows[id]
+        if row.repeats is not None and row.repeats(subject.results):
+            minor.add(id)
+        values = None if id == "phi" else row.of(state)
+        if values is None:
+            continue
+        if not np.any(values):
+            minor.add(id)
+        elif row.quantity.kind == "force":
+            forces[id] = np.broadcast_to(values, _EVERYWHERE.shape)
+    if "P" in forces:
+        forces = {"P": forces["P"], **forces}
+    different = list[Array]()
+    for id, values in forces.items():
+        if any(_are_equal(values, others) for others in different):
+            minor.add(id)
+        else:
+            different.append(values)
+    return minor
+
+
+def _are_equal(values: Array, others: Array) -> bool:
+    """Return whether two columns (n,) are equal but for rounding."""
+    return bool(np.abs(values - others).max() <= _ROUNDING * np.abs(values).max())
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
@@ -458,8 +570,8 @@ class Places(NamedTuple):
     """A table of places with its values in SI; see `PlaceTable`.
 
     declared: its quantities by id; one that no row has is left out. headed: the names of the rows are texts for people;
-    otherwise spaces in them become underscores. alone: the digits to which every value is rounded by itself; values of
-    one kind then have one unit.
+    otherwise programs have them without spaces and punctuation. alone: the digits to which every value is rounded by
+    itself; values of one kind then have one unit.
     """
 
     id: str
@@ -498,13 +610,34 @@ class Places(NamedTuple):
                     decimals=decimals, alone=0 if quantity.kind == "angle" else self.alone
                 )
             )
-        names = [
-            names if self.headed else tuple(name.replace(" ", "_") for name in names)
-            for names, _ in self.rows
-        ]
+        names = [names for names, _ in self.rows]
+        words: dict[str, str] = {}
+        if not self.headed:
+            words = {_as_id(name): name for row in names for name in row}
+            names = [tuple(map(_as_id, row)) for row in names]
         return PlaceTable(
-            self.id, self.title, self.heads, tuple(names), tuple(columns), self.headed, self.in_note
+            self.id,
+            self.title,
+            self.heads,
+            tuple(names),
+            tuple(columns),
+            self.headed,
+            self.in_note,
+            words,
         )
+
+
+_BETWEEN = re.compile(r"[\s,:;=–]+")
+"""What parts the words of the name of a row."""
+
+
+def _as_id(name: str) -> str:
+    """Return the name of a row as programs have it.
+
+    >>> _as_id("shaft n = 1, against the crank: A")
+    'shaft_n_1_against_the_crank_A'
+    """
+    return _BETWEEN.sub("_", name)
 
 
 def shown_key_values(found: Iterable[tuple[Quantity, object]], system: str) -> list[KeyValue]:
@@ -604,8 +737,11 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         raise UsageError(f"--where: {error}") from None
 
     def angles(subject: Subject) -> Sequence[float]:
-        own, every = subject.lists.columns(command), every_quantity().columns(command)
-        ids = called(name, own.values()) or called(name, every.values())
+        own = subject.lists.columns(command)
+        ids = called(name, own.values())
+        if not ids:
+            every = every_quantity().columns(command)
+            ids = called(name, every.values())
         if not ids:
             near = did_you_mean(name, tuple(every))
             raise UsageError(f"--where: '{name}' is no column{near} (known: {', '.join(every)})")

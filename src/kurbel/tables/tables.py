@@ -3,7 +3,7 @@
 import math
 import re
 from array import array
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import NamedTuple, TypeVar, Union
 
@@ -21,6 +21,7 @@ class Column(NamedTuple):
     marked: indices of the values that have an asterisk in print.
     alone: significant digits if each value has its own scale, as errors over many powers of ten; 0 for a common scale.
     size: the largest value of the whole curve, if the values here are only rounding errors relative to it; else 0.
+    minor: for programs, and for people who name it: 0 at every angle, or the same as another row.
     """
 
     id: str
@@ -33,12 +34,15 @@ class Column(NamedTuple):
     marked: tuple[int, ...] = ()
     alone: int = 0
     size: float = 0.0
+    minor: bool = False
 
 
 class KeyValue(NamedTuple):
     """One key value, already in its unit; a tuple for a list of angles; `at_deg`: crank angle of an extreme.
 
-    noise: the value is only rounding error, printed with digits in JSON only; heading: see `Quantity`.
+    noise: the value is only rounding error, printed with digits in JSON only; heading: see `Quantity`; minor: for
+    programs, and for people who name it, as what other rows have, too; side: `before` where the extreme is the limit
+    before a jump, while tables show what is just after it.
     """
 
     id: str
@@ -50,6 +54,8 @@ class KeyValue(NamedTuple):
     at_deg: float | None = None
     noise: bool = False
     heading: str = ""
+    minor: bool = False
+    side: str = ""
 
 
 class LeftOut(NamedTuple):
@@ -63,8 +69,9 @@ class PlaceTable(NamedTuple):
     """A table whose rows are named places instead of crank angles; `id` names it in csv and json.
 
     heads: titles of the names, such as (part, place), or none.
-    names: of each row, one for each head; a blank is _ unless headed.
+    names: of each row, one for each head; as programs have them unless headed.
     headed: the heads are printed, and the names as they are; otherwise a _ is printed as a blank.
+    words: what people read for names in which more than the blanks is different.
     in_note: a note has the whole content, so that the table is not printed.
     """
 
@@ -75,6 +82,7 @@ class PlaceTable(NamedTuple):
     columns: tuple[Column, ...]
     headed: bool = False
     in_note: bool = False
+    words: Mapping[str, str] = {}
 
 
 PISTONS = "pistons"
@@ -236,6 +244,23 @@ def table_angles(
 
 # what people are shown: identical cylinders, pins and bearings once; on a low terminal a first selection
 
+BEFORE = "before"
+"""Side of an extreme that is the limit before a jump."""
+_JUMPS = "− after an angle: just before the jump there."
+
+
+def notes_for_people(report: Report) -> tuple[str, ...]:
+    """Return the notes of a report, with that on extremes before a jump where it has any."""
+    sides = {
+        key_value.side
+        for part in report.all_parts
+        for key_value in part.key_values
+        if not key_value.minor
+    }
+    jumps = (_JUMPS,) if BEFORE in sides else ()
+    return tuple(note for note in (report.mirrored, *report.notes, *jumps) if note)
+
+
 _NUMBERED = re.compile(r"(.*\D)(\d{1,9})$")
 Item = TypeVar("Item")
 
@@ -278,6 +303,29 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
     return list(groups.values())
 
 
+def for_people(report: Report) -> Report:
+    """Return the report without what only programs are to read, and with identical parts merged into one."""
+
+    def printed(part: Part) -> Part:
+        columns = tuple(column for column in part.columns if not column.minor)
+        key_values = tuple(key_value for key_value in part.key_values if not key_value.minor)
+        if len(columns) < 2 and len(columns) < len(part.columns):  # crank angles alone
+            columns = ()
+        tables = tuple(named(table, part) for table in part.place_tables)
+        return part._replace(columns=columns, key_values=key_values, place_tables=tables)
+
+    def named(table: PlaceTable, part: Part) -> PlaceTable:
+        return (
+            table._replace(title=f"{table.title}: {part.name}")
+            if titles.count(table.title) > 1
+            else table
+        )
+
+    report = shown_once(report)
+    titles = [table.title for table in report.printed_tables]
+    return report.changed(printed)
+
+
 def shown_once(report: Report) -> Report:
     """Return the report with identical parts merged into one; the title names them if no other part is left.
 
@@ -314,22 +362,36 @@ def shown_once(report: Report) -> Report:
     return report._replace(parts=tuple(parts), title=title, notes=notes)
 
 
-def first_selection(report: Report, ids: Collection[str], across: int, rows: int) -> Report:
-    """Return the report with only these columns, key values and tables, and the warnings.
+def _left_out_in_short(parts: Iterable[Part]) -> tuple[str, ...]:
+    """Return what parts leave out as one sentence, each reason once."""
+    reasons = dict[str, list[str]]()
+    for left_out in dict.fromkeys(left_out for part in parts for left_out in part.left_out):
+        reasons.setdefault(left_out.why, []).append(left_out.what)
+    texts = [f"{', '.join(what)} ({why})" for why, what in reasons.items()]
+    return (f"Left out: {'; '.join(texts)}.",) if texts else ()
+
+
+def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) -> Report:
+    """Return the report with only these columns, key values and tables, what it leaves out in a sentence, and warnings.
+
+    Key values have the order of the ids.
 
     across: the largest number of crank angles; rows: the largest number of rows of a table. Without ids all columns and
     key values stay, and the tables of the whole machine, if it has any.
     """
+    left_out = _left_out_in_short(report.all_parts)
     report = shown_once(report)
+    order = {id: number for number, id in enumerate(ids)}
     of_whole = report.whole is not None and report.whole.place_tables
 
     def chosen(part: Part) -> Part:
+        printed = [column for column in part.columns if not column.minor]
+        # of an id that both a column and a key value have the key value is meant
+        values = {key_value.id for key_value in part.key_values}
         columns = [
-            column
-            for column in part.columns
-            if not ids or column.id in ids or column is part.columns[0]
+            one for one in printed if not ids or one.id in set(ids) - values or one is printed[0]
         ]
-        last = len(part.columns[0].values) - 1 if len(columns) > 1 else 0
+        last = len(columns[0].values) - 1 if len(columns) > 1 else 0
         by = next((k for k in range(1, last) if last % k == 0 and last // k < across), 1)
         tables = [
             place_table
@@ -337,19 +399,15 @@ def first_selection(report: Report, ids: Collection[str], across: int, rows: int
             if (place_table.id in ids if ids else not of_whole or part is report.whole)
         ]
         return part._replace(
-            columns=tuple(
-                column._replace(values=column.values[::by], marked=()) for column in columns
-            )
+            columns=tuple(one._replace(values=one.values[::by], marked=()) for one in columns)
             if last
             else (),
-            key_values=tuple(
-                key_value for key_value in part.key_values if not ids or key_value.id in ids
-            ),
+            key_values=_first_key_values(part.key_values, order),
             place_tables=tuple(
                 table._replace(
                     names=table.names[:rows],
                     columns=tuple(
-                        column._replace(values=column.values[:rows]) for column in table.columns
+                        each._replace(values=each.values[:rows]) for each in table.columns
                     ),
                 )
                 for table in tables
@@ -360,7 +418,19 @@ def first_selection(report: Report, ids: Collection[str], across: int, rows: int
     way_on = (
         f"First selection. All columns, angles and key values: kurbel {report.command} FILE --all"
     )
-    return report.changed(chosen)._replace(notes=(), head=(*report.head, way_on))
+    selected = report.changed(chosen)._replace(notes=left_out, head=(*report.head, way_on))
+    return selected._replace(notes=tuple(filter(None, [" ".join(notes_for_people(selected))])))
+
+
+def _first_key_values(
+    key_values: Sequence[KeyValue], order: Mapping[str, int]
+) -> tuple[KeyValue, ...]:
+    """Return the key values that have a place in an order, in it; without any order those that people are shown."""
+    shown = [key_value for key_value in key_values if not key_value.minor]
+    if not order:
+        return tuple(shown)
+    chosen = [key_value._replace(heading="") for key_value in shown if key_value.id in order]
+    return tuple(sorted(chosen, key=lambda key_value: order[key_value.id]))
 
 
 _SHIFTED = "Pins and bearings named together carry equal loads, each at its own crank angles; those of the first are shown."

@@ -11,12 +11,12 @@ from collections.abc import Callable
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.traces.correct import (
     COMPRESSION,
     EXPANSION,
     Exponent,
-    Setting,
     Trace,
     drift_of,
     exponent,
@@ -57,8 +57,8 @@ class TraceReading:
     def __init__(self, trace: Trace, setting: Setting, each: Array) -> None:
         self.trace, self.setting, self.each = trace, setting, each
         self.p: Array = each.mean(axis=0)
-        self.angles: Array = trace.angles + setting.shift(trace)
-        self.place = setting.from_dead_centre(trace)
+        self.angles: Array = trace.angles + trace.shift(setting)
+        self.place = trace.from_dead_centre(setting)
         self.step = trace.period / (len(self.p) - 1)
         widths = np.convolve(np.diff(trace.angles), [1.0, 1.0])
         order = np.argsort(self.p)

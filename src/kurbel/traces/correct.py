@@ -9,19 +9,17 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Indivisible, Number
-from kurbel.crank_angle import CrankAngle
+from kurbel.arrays import Array, Indivisible, Number, Truth
+from kurbel.crank_angle import CYCLES, CrankAngle
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import refused
-from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.pieces import Angles, Pieces, refined
 
-CYCLES = {"two-stroke": 1, "four-stroke": 2}
-"""Cycle -> revolutions of the shaft."""
 _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
 
@@ -74,6 +72,19 @@ class Trace(Indivisible):
     against: bool = False
     unit: float = 1.0
     scale: float = 1.0
+    burns: ClassVar[bool] = False
+    by_steam: ClassVar[bool] = False
+    compresses: ClassVar[bool] = False
+    traced: ClassVar[Literal[True]] = True
+    exponents: ClassVar[tuple[Number, ...]] = ()
+
+    def rules_of_events(self, valve_compresses: Truth | None) -> Iterator[Rule]:
+        """Yield nothing: a trace has its events as they were measured."""
+        return iter(())
+
+    def loaded(self) -> "Trace":
+        """Return the trace: as measured, its valves are at work."""
+        return self
 
     def __post_init__(self) -> None:
         alike = (
@@ -127,6 +138,16 @@ class Trace(Indivisible):
         angles = np.concatenate((self.angles[:-1], self.angles + self.period))
         return replace(self, angles=angles, samples=joined_in_pairs(self.samples), completed=True)
 
+    def shift(self, setting: Setting) -> float:
+        """Return the angle in degrees that is added to its angles to get crank angles."""
+        inner, outer = setting.mechanism.dead_centres()
+        return float((outer if setting.mirrored else inner) - self.angle_zero)
+
+    def from_dead_centre(self, setting: Setting) -> Array:
+        """Return the angles (n,) in degrees of samples from the chamber's own (firing) dead centre, −½ to ½ cycle."""
+        after = self.angles + self.shift(setting) - setting.own_dead_centre
+        return np.remainder(after + setting.cycle / 2, setting.cycle) - setting.cycle / 2
+
     def of_cycle(self, number: int, period: float) -> "Trace":
         """Return one cycle of these degrees alone, counted from 1."""
         whole = self.over(period)
@@ -137,56 +158,6 @@ def joined_in_pairs(laps: Array) -> Array:
     """Return laps (m, n), each with its closing sample, as cycles (m // 2, 2n − 1) of two laps each."""
     even = laps[: len(laps) // 2 * 2]
     return np.concatenate((even[0::2, :-1], even[1::2, :-1], even[0::2, :1]), axis=1)
-
-
-class Setting(NamedTuple):
-    """The chamber, and the reference of its pressures.
-
-    cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa; absolute: whether the chamber's own
-    figures are; mirrored: the crank end repeats the head end's figures one stroke later. For many machines numbers are
-    arrays (machines,); the annotations are those of one.
-    """
-
-    mechanism: Mechanism
-    cycle: float
-    head_end: bool
-    ambient: float
-    absolute: bool
-    mirrored: bool = False
-
-    @property
-    def base(self) -> float:
-        """Pressure in Pa that is subtracted from figures of the chamber to get gauge pressures."""
-        return self.ambient if self.absolute else 0.0
-
-    @property
-    def lift(self) -> float:
-        """Pressure in Pa that is added to figures of the chamber to get absolute pressures."""
-        return 0.0 if self.absolute else self.ambient
-
-    @property
-    def own_dead_centre(self) -> float:
-        """Crank angle in degrees at which the chamber is smallest."""
-        inner, outer = self.mechanism.dead_centres()
-        return inner if self.head_end else outer
-
-    def shift(self, trace: Trace) -> float:
-        """Return the angle in degrees that is added to an angle of a trace to get the crank angle."""
-        inner, outer = self.mechanism.dead_centres()
-        return float((outer if self.mirrored else inner) - trace.angle_zero)
-
-    def from_dead_centre(self, trace: Trace) -> Array:
-        """Return the angles (n,) in degrees of samples from the chamber's own (firing) dead centre, −½ to ½ cycle."""
-        after = trace.angles + self.shift(trace) - self.own_dead_centre
-        return np.remainder(after + self.cycle / 2, self.cycle) - self.cycle / 2
-
-    def stroke_fraction(self, after: Array) -> Array:
-        """Return the fraction of the stroke from the chamber's smallest volume, so many degrees after it."""
-        angle = CrankAngle.of(after + self.own_dead_centre)
-        displaced = (
-            self.mechanism.coordinate(angle) - self.mechanism.start
-        ) / self.mechanism.stroke
-        return displaced if self.head_end else 1 - displaced
 
 
 # drift and level
@@ -216,7 +187,7 @@ def corrected(trace: Trace, setting: Setting) -> Array:
             (outer if setting.head_end else inner) + setting.cycle - 360.0,
             setting.base,
         )
-    turned = trace.angles + setting.shift(trace) - angle
+    turned = trace.angles + trace.shift(setting) - angle
     away = np.abs(np.remainder(turned + trace.period / 2, trace.period) - trace.period / 2)
     near = away <= max(_AROUND, float(away.min()))
     return samples + (pressure - samples[:, near].mean(axis=1, keepdims=True))

@@ -2,16 +2,17 @@
 
 import math
 from functools import cached_property
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import within_cycle
+from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
 from kurbel.traces.correct import (
-    Setting,
     Trace,
     by_straight_lines,
     by_trapezoid,
@@ -33,9 +34,11 @@ class TracePressure:
     starts: where the straight lines between them begin.
     """
 
+    traced: ClassVar[Literal[True]] = True
+
     def __init__(self, trace: Trace, setting: Setting) -> None:
         self.trace, self.setting = trace.over(setting.cycle), setting
-        self.angles = self.trace.angles + setting.shift(trace)
+        self.angles = self.trace.angles + trace.shift(setting)
         self.each = corrected(self.trace, setting)
         self.pressures = np.asarray(self.each.mean(axis=0))
         self._p, widths = self.pressures - setting.base, np.diff(self.angles)

@@ -92,9 +92,7 @@ class Figures(Form):
         known = reading.key_values()
         found: dict[str, object] = {}
         for name, written in value.items():
-            ids = called(name, known.values())
-            scope, own = ("", name) if ids else scoped(name)
-            ids = ids or called(own, known.values())
+            scope, own, ids = _meant(name, known)
             wrong = ambiguity(own, ids) if ids else self._unknown(name, known)
             id = ".".join(filter(None, (scope, *ids[:1])))
             if not wrong and known[ids[0]].listed:
@@ -119,6 +117,20 @@ class Figures(Form):
         hint = did_you_mean(name, tuple(single)) or in_sentences(name, single.values())
         some = f"; known are {', '.join([*known][:6])}, …"
         return f"unknown key value '{text_in_one_line(name)}'{hint or some}"
+
+
+def _meant(name: str, known: Mapping[str, Quantity]) -> tuple[str, str, tuple[str, ...]]:
+    """Return the prefix of a name, '' without one, the rest, and the ids that this means.
+
+    Ids are looked up first, with and without a prefix: for symbols all key values are needed.
+    """
+    scope, own = scoped(name)
+    if name in known:
+        return "", name, (name,)
+    if own in known:
+        return scope, own, (own,)
+    ids = called(name, known.values())
+    return ("", name, ids) if ids else (scope, own, called(own, known.values()))
 
 
 LIMITS = Figures(

@@ -6,8 +6,9 @@ then `Maker` makes records of these.
 
 import functools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NoReturn, Union
 
 import numpy as np
@@ -33,17 +34,47 @@ from kurbel.errors import NotANumber, Path, RuleError, path_text, refused
 from kurbel.near_words import did_you_mean, near
 from kurbel.numerics.arithmetic import is_number
 
+Door = Callable[[], type[Record]]
+"""A function with one import inside, that of the record it returns; it is called when the first mapping is read."""
+
 
 class RecordForm(Form):
-    """A mapping that becomes a record. inline_too: the outer mapping may have its keys, too, so `key_places` skips it."""
+    """A mapping that becomes a record. inline_too: the outer mapping may have its keys, too, so `key_places` skips it.
+
+    record: the class, or a door to it, which is opened when a file has such a mapping, or asks for its keys.
+    """
 
     shape = dict
+    example, written, schema = "…", "a mapping", {}
 
-    def __init__(self, record: type[Record], inline_too: bool = False) -> None:
-        self.record, self.inline_too, self.keys = record, inline_too, record.KEYS
-        parts = ((name, key.form) for name, key in self.keys.items())
-        super().__init__(f"a mapping with the keys {', '.join(self.keys)}", parts=parts)
-        self.listed = next(
+    def __init__(self, record: type[Record] | Door, inline_too: bool = False) -> None:
+        self._door: Door = (lambda: record) if isinstance(record, type) else record
+        self.inline_too = inline_too
+
+    @cached_property
+    def record(self) -> type[Record]:
+        """The class of the record."""
+        return self._door()
+
+    @property
+    def keys(self) -> Keys:
+        """Its keys by name."""
+        return self.record.KEYS
+
+    @cached_property
+    def expected(self) -> str:
+        """For 'expected …'."""
+        return f"a mapping with the keys {', '.join(self.keys)}"
+
+    @cached_property
+    def parts(self) -> tuple[tuple[str, Form], ...]:
+        """The forms of its keys."""
+        return tuple((name, key.form) for name, key in self.keys.items())
+
+    @cached_property
+    def listed(self) -> "Inline | None":
+        """The form of the keys of an item of a list that may be here instead."""
+        return next(
             (form for _, form in self.parts if isinstance(form, Inline) and form.unless), None
         )
 
@@ -57,6 +88,14 @@ class RecordForm(Form):
                 for case in key.form.chosen(mapping.get(name)):
                     found |= case.names(mapping)
         return found
+
+    def unwritten(self) -> dict[str, str]:
+        """Return words for what no key describes, those of inline records too, each with what to write instead."""
+        advice = dict(self.record.UNWRITTEN)
+        for key in self.keys.values():
+            if isinstance(key.form, Inline):
+                advice |= key.form.unwritten()
+        return advice
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the values of the keys of a mapping."""
@@ -104,10 +143,14 @@ class RecordForm(Form):
 
     def _unknown(self, reading: Reading, mapping: Tree, path: Path) -> Iterator[str]:
         """Report each unknown key, and yield the known keys that were probably meant."""
-        known, moved = self.names(mapping), self._moved(mapping)
+        known, moved = self.names(mapping), self.moved(mapping)
+        unwritten = self.unwritten()
         synonyms = {word: name for name, key in known.items() for word in (*key.also, key.symbol)}
         others = f"; valid keys here are {', '.join(known)}"
         for name in [name for name in mapping if name not in known]:
+            if name in unwritten:
+                reading.fault((*path, name), f"unknown key; {unwritten[name]}", at_key=True)
+                continue
             place = moved.get(name) or reading.where_it_belongs(name, path)
             meant = "" if name in moved else synonyms.get(name) or near(name, tuple(known))
             if meant:
@@ -123,7 +166,7 @@ class RecordForm(Form):
             if meant and meant not in mapping:
                 yield meant
 
-    def _moved(self, mapping: Tree) -> dict[str, str]:
+    def moved(self, mapping: Tree) -> dict[str, str]:
         """Return the keys that belong below another key of this mapping, each with the message where to move it."""
         moved = {
             inner: f"move it below '{name}'"
@@ -402,14 +445,22 @@ class OneOf(Form):
     """
 
     def __init__(self, *forms: Form) -> None:
-        expected = ", or ".join(form.expected for form in forms)
-        written = " or ".join(form.written for form in forms)
-        super().__init__(expected, forms[0].example, written, parts=[("", form) for form in forms])
+        self.example, self.schema, self.parts = (
+            forms[0].example,
+            {},
+            tuple(("", form) for form in forms),
+        )
+        self.written = " or ".join(form.written for form in forms)
         self.forms = forms
         self.kind = next((form.kind for form in forms if form.kind), "")
         numbers = [form.number for form in forms if form.number]
         self.number = numbers[0] if len(numbers) == 1 else None
         self.unread = next((form.unread for form in forms if form.unread is not None), None)
+
+    @cached_property
+    def expected(self) -> str:
+        """For 'expected …'."""
+        return ", or ".join(form.expected for form in self.forms)
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a value by the first form that has its shape."""
@@ -430,10 +481,12 @@ class OneOf(Form):
         )
 
     def _list_of(self, mapping: Tree) -> "Listing | None":
-        """Return the list, among these forms, of which a mapping is an item; None if it is no item."""
-        of_records = {
-            key for form in self.forms if isinstance(form, RecordForm) for key in form.keys
-        }
+        """Return the list, among these forms, of which a mapping is an item; None if it is no item.
+
+        A record that has its keys, or knows below which of its own they belong, says more about them.
+        """
+        records = [form for form in self.forms if isinstance(form, RecordForm)]
+        of_records = {key for form in records for key in (*form.keys, *form.moved(mapping))}
         for form in self.forms:
             if (
                 isinstance(form, Listing)
@@ -514,12 +567,14 @@ class Keyed(Form):
         return REFUSED if others else inner
 
 
-Likeness = Union[str, type, tuple[str, ...], list["Likeness"], Form]
+Likeness = Union[str, type, Door, tuple[str, ...], list["Likeness"], Form]
 """What a form may be declared by: see `form_of`."""
 
 
 def form_of(form: Likeness, bounds: Mapping[str, Any] = {}) -> Form:
     """Return the form of a key's value: a kind of quantity with its bounds, a type, words, a record, a list of one.
+
+    A record may be behind a door.
 
     bounds: `above`, `least`, `below`, `most` in SI, and `words` that mean numbers.
     """
@@ -535,4 +590,4 @@ def form_of(form: Likeness, bounds: Mapping[str, Any] = {}) -> Form:
         return Choice(("true", "false"), means={"true": True, "false": False})
     if form is str:
         return TEXT
-    return RecordForm(form) if isinstance(form, type) else form
+    return form if isinstance(form, Form) else RecordForm(form)

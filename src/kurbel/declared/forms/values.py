@@ -7,6 +7,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
+from functools import cached_property
 from typing import Any, ClassVar, NoReturn
 
 import numpy as np
@@ -61,6 +62,16 @@ class Form(ABC):
     number: "NumberForm | None" = None
     unread: object = None
     inline: "tuple[Form, ...]" = ()
+
+    @cached_property
+    def expected(self) -> str:
+        """For 'expected …'."""
+        raise NotImplementedError
+
+    @cached_property
+    def parts(self) -> "tuple[tuple[str, Form], ...]":
+        """The forms that it consists of, each after its key."""
+        return ()
 
     def __init__(
         self,
@@ -513,3 +524,9 @@ class Points(Form):
         hint = "; write decimal points, such as 1.5 for 1,5" if whole else ""
         wrong = f"a {self._called} {self._one} has {self._count} numbers, [{text_in_one_line(', '.join(texts[:6]))}] has"
         refused(f"{wrong} {len(texts) or 'none'}{hint}")
+
+
+CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)
+"""A clearance volume over the stroke volume, within bounds for which p V^n can be computed."""
+CLEARANCE_OR_NONE = NumberForm(share_of="the stroke", least=1e-6, most=1e5, zero=True)
+"""The same if it may also be 0, which leaves the clearance out of the theory."""

@@ -57,6 +57,8 @@ _FEWEST = 8
 """Smallest number of orders, so that those of balance shafts are included."""
 _MOST = 24
 """Largest number of orders listed; a rod hardly longer than the crank has thousands, which decrease slowly."""
+_AT_ONCE = 64
+"""Orders that are computed at all angles together."""
 _EPS = float(np.finfo(float).eps)
 _REAL = 1e-12
 """Rounding of a direction (relative), or of a lever in m."""
@@ -159,11 +161,17 @@ def _summed(waves: ComplexArray, levers: Sequence[Number]) -> ClosedCurve:
 
 def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
     """Return the force or moment vectors (n,) of one machine at crank angles (n,) in degrees; rounding is set to 0."""
+    waves = curve.waves[:, 0]
+    present = np.flatnonzero(waves)
     found = np.zeros(degrees.shape, complex)
-    for number, wave in zip(curve.numbers.tolist(), curve.waves[:, 0]):
-        if wave:
-            found += wave * unit_vector(number * degrees)
-    return unless_cancelled(found, np.abs(curve.waves).sum())
+    for begin in range(0, len(present), _AT_ONCE):
+        block = present[begin : begin + _AT_ONCE]
+        turned = waves[block, None] * unit_vector(np.multiply.outer(curve.numbers[block], degrees))
+        for (
+            wave
+        ) in turned:  # one after another, so that the sum at an angle does not depend on the others
+            found += wave
+    return unless_cancelled(found, np.abs(waves).sum())
 
 
 # over the crank angle

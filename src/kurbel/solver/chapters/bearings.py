@@ -35,8 +35,9 @@ from kurbel.quantity import ValuesById, value, values_for
 from kurbel.solver.effort import position
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import Force, SupportedShaft, shaft_obstacle
+from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
+from kurbel.solver.vector import Force
 
 HALF_CONTACT = 60.0
 """Degrees to either side of a load over which pin and shell are taken to touch."""

@@ -4,7 +4,10 @@
 
     J₁ ω̇₁ = M − T        J₂ ω̇₂ = T − M_load(ω₂)        d/dt = ω_n d/dφ
 
-It is the shortest chain of `kurbel.solver.chapters.chain`. Its natural order is q = √(k (1/J₁ + 1/J₂))/ω_n.
+It is the shortest chain of `kurbel.solver.chapters.chain`. Its natural order is q = √(k (1/J₁ + 1/J₂))/ω_n. A stiff
+one does not vibrate with the torque: both masses turn alike, and
+
+    T = J₂ ω̇ + M_load(ω)
 """
 
 from __future__ import annotations
@@ -19,11 +22,13 @@ from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.extreme import Extremes
+from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import value
 from kurbel.solver.chapters.chain import Chain, ChainEquation, row_of_joins
 from kurbel.solver.chapters.harmonics import amplitudes
 from kurbel.solver.effort import TurningEffort
-from kurbel.solver.speed import SpeedLaw, SpeedLine
+from kurbel.solver.figures import Results
+from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine
 
 _NEAR, _WORTH, _AMPLIFIED = 0.1, 1e-3, 1.5
 """A harmonic causes a warning if its order is within _NEAR of the natural one (relatively), its amplitude at least
@@ -47,13 +52,10 @@ def natural_order(coupling: Coupling, own: Array, omega: Number) -> Array:
     return np.sqrt(coupling.stiffness * (1 / own + 1 / coupling.inertia)) / omega
 
 
-class ElasticCoupling(SpeedLine):
-    """The torque in the coupling and the speed of the crank shaft, of one machine or of many.
+class CouplingTorque(Results):
+    """Extremes of the torque in a coupling; torque: its samples in N m with their pieces."""
 
-    own: J₁ in kg m², (n,). torque, alpha: samples of the torque in N m, and of dω/dt in rad/s², with their pieces.
-    Raises NoSolutionError in a resonance without damping and where numbers leave the range of floats, Unsettled where
-    no motion repeats.
-    """
+    torque: tuple[Pieces, Array]
 
     M_coupling_max = value(
         "M_K,max",
@@ -73,6 +75,49 @@ class ElasticCoupling(SpeedLine):
         "Torque variation in the coupling, relative to that in a rigid coupling",
         lambda one: one.amplified(),
     )
+
+    @cached_property
+    def torque_extremes(self) -> Extremes:
+        """Largest and smallest torque in the coupling in N m."""
+        pieces, torque = self.torque
+        return pieces.extremes(torque[None]).each(self.result)[0]
+
+    def result(self, values: Array) -> Any:
+        """Return values (n,), nan for machines without a solution; for one machine a float."""
+        raise NotImplementedError
+
+    def amplified(self) -> Number | None:
+        """Return the swing of the torque over that in a rigid coupling; None where that does not swing."""
+        raise NotImplementedError
+
+
+class StiffCoupling(CouplingTorque):
+    """The torque in a coupling so stiff that the driven inertia turns with the cranks."""
+
+    def __init__(self, line: RigidLine, driven: Number) -> None:
+        """Take the speed line of all that turns, and the driven inertia in kg m²."""
+        self._line = line
+        self.torque = line.torque_beyond(driven)
+
+    def result(self, values: Array) -> Any:
+        """Return values (n,), nan for machines without a speed line; for one machine a float."""
+        return self._line.result(values)
+
+    def amplified(self) -> Number | None:
+        """Return 1, since it counts as rigid; None where the torque of the only machine does not swing."""
+        pieces, _ = self.torque
+        highest, lowest = self.torque_extremes
+        still = self._line.effort.count is None and highest.value == lowest.value
+        return None if still else self.result(np.ones(pieces.count))
+
+
+class ElasticCoupling(SpeedLine, CouplingTorque):
+    """The torque in the coupling and the speed of the crank shaft, of one machine or of many.
+
+    own: J₁ in kg m², (n,). torque, alpha: samples of the torque in N m, and of dω/dt in rad/s², with their pieces.
+    Raises NoSolutionError in a resonance without damping and where numbers leave the range of floats, Unsettled where
+    no motion repeats.
+    """
 
     def __init__(self, effort: TurningEffort, own: Array, law: SpeedLaw | None) -> None:
         coupling, pieces = effort.machine.coupling, effort.pieces
@@ -144,11 +189,6 @@ class ElasticCoupling(SpeedLine):
     def growth(self) -> Any:
         """Logarithm of what is left of a small disturbance after a cycle."""
         return self.result(self._found.growth)
-
-    @cached_property
-    def torque_extremes(self) -> Extremes:
-        """Largest and smallest torque in the coupling in N m."""
-        return self.pieces.extremes(self.torque[1][None]).each(self.result)[0]
 
     def amplified(self) -> Number | None:
         """Return the swing of the torque over that of J₂ (M − L)/(J₁ + J₂) + L; None where that does not swing."""

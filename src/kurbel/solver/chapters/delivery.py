@@ -8,6 +8,7 @@
     V̇ = η_v V_s n, m = p_s V̇/(R T₁)          capacity at suction, mass flow
     T₂ = T₁ (p_d/p_s)^((n − 1)/n)            temperature of delivery
     N_is = κ/(κ − 1) p_s V̇ [(p_d/p_s)^((κ − 1)/κ) − 1]
+    A_W = 1 − A_R,m/A_R,0                    share of the work against pipe friction that vessels save
 
 Pressures in the formulas are absolute. The flow is sampled on the pieces of the cycle, which are cut at dead centres,
 where the valves change.
@@ -165,6 +166,7 @@ _WORKS = {
     "_bare": ("R,0", "without vessels"),
     "_steady": ("R,m", "with vessels at both"),
 }
+_PIPE_WORKS = tuple(f"pipe_work{state}" for state in _WORKS)
 
 
 class Delivery(Results):
@@ -203,7 +205,7 @@ class Delivery(Results):
         _WORKS, "pipe_work*", "A_*", "energy", "Work against friction in the pipes per cycle, *"
     )
     vessel_saving = value(
-        "A_W", "ratio", "Share of the work against pipe friction that a vessel saves"
+        "A_W", "ratio", "Share of the work against pipe friction that vessels at all pipes save"
     )
 
     def __init__(
@@ -286,7 +288,7 @@ class Delivery(Results):
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         found["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
         found["volume_fluctuation"] = swing = self._swing(draws=False)
-        found["vessel_saving"] = 1 - mean**3 / self._mean(cubed=True)
+        found["vessel_saving"] = self._saving(mean)
         for pipe, draws in self._pipes:
             if pipe.vessel and draws:
                 sizes = _vessel(pipe.vessel, self._swing(draws=True), "suction")
@@ -299,9 +301,9 @@ class Delivery(Results):
             return found
 
         found["flow_mean"] = mean * self.omega
-        works = [self._pipe_works(pipe, draws) for pipe, draws in self._pipes]
-        for id, terms in zip(("pipe_work", "pipe_work_bare", "pipe_work_steady"), zip(*works)):
-            found[id] = total(*terms)
+        if self._pipes:
+            for id, work in zip(_PIPE_WORKS, self._works_of_pipes):
+                found[id] = work * self.omega**2
         if self.pump and self.pump.suction_pipe:
             liquid, heads = self.pump.liquid, self.sampled["friction_head"]
             if "acceleration_head" in self.sampled:
@@ -311,17 +313,32 @@ class Delivery(Results):
             found["suction_lift_max"] = static - most
         return found
 
-    def _pipe_works(self, pipe: Pipe, draws: bool) -> tuple[Number, Number, Number]:
-        """Return the work in J per cycle against friction in a pipe as it is, without a vessel, and with one."""
+    def _saving(self, mean: Number) -> Number:
+        """Return the share of the work against friction that vessels at all pipes save: 1 − A_R,m/A_R,0.
+
+        Without pipes it is that of one for the flow delivered, of which the mean per radian is given in m³.
+        """
+        of_flow_alone = 1 - mean**3 / self._mean(cubed=True)
+        if not self._pipes:
+            return of_flow_alone
+        _, bare, steady = self._works_of_pipes
+        rubs = bare > 0
+        return where(rubs, 1 - steady / where(rubs, bare, 1.0), of_flow_alone)
+
+    @cached_property
+    def _works_of_pipes(self) -> tuple[Number, ...]:
+        """Works over ω² per cycle against friction in all pipes: as they are, without vessels, with one at each."""
+        works = [self._works_of(pipe, draws) for pipe, draws in self._pipes]
+        return tuple(total(*terms) for terms in zip(*works))
+
+    def _works_of(self, pipe: Pipe, draws: bool) -> tuple[Number, Number, Number]:
+        """Return the works over ω² against friction in a pipe: as it is, without a vessel, and with one."""
         assert self.pump is not None
-        scale = (
-            self.pump.liquid.density
-            * _friction(pipe)
-            * self.omega**2
-            * math.radians(self.pieces.cycle)
-        )
-        bare, steady = scale * self._mean(draws, cubed=True), scale * self._mean(draws) ** 3
-        return steady if pipe.vessel else bare, bare, steady
+        scale = self.pump.liquid.density * _friction(pipe) * math.radians(self.pieces.cycle)
+        bare = scale * self._mean(draws, cubed=True)
+        steady = scale * self._mean(draws) ** 3
+        as_it_is = steady if pipe.vessel else bare
+        return as_it_is, bare, steady
 
 
 def _section(pipe: Pipe) -> Number:
@@ -405,7 +422,8 @@ class CompressorEnd:
         ]
         if kappas:
             power = (kappas[0] - 1) / kappas[0]
-            found["isentropic_power"] = self.suction * capacity * (ratio**power - 1) / power
+            head = np.expm1(power * np.log(ratio)) / power
+            found["isentropic_power"] = self.suction * capacity * head
 
 
 _OF_ALL_ENDS = (
@@ -493,7 +511,7 @@ class MachineDelivery:
             if not piston.pumps
             and (works or isinstance(piston.gas.piston.chambers.get(end), Compressor))
         ]
-        self.stages = _staged(ends)
+        self.stages: tuple[CompressorStage, ...] = _staged(ends)
         if not (self._pumps or self.stages):
             raise UsageError(
                 f"{self.machine.name} delivers nothing: no piston is driven by the shaft; a pump has a 'constant' "

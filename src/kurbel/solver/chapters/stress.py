@@ -43,8 +43,9 @@ from kurbel.numerics.pieces import Pieces, highest, resolved
 from kurbel.quantity import Heading, ValuesById, value, values_for
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import Force, FreeBody, flywheel_weight
+from kurbel.solver.shaft import FreeBody, flywheel_weight
 from kurbel.solver.state import State, on_pin
+from kurbel.solver.vector import Force
 
 PARTS = {
     "pin": ("pin", "the crank pin"),
@@ -206,7 +207,12 @@ class StressColumns(AtAngles):
 
     commands = ("stress",)
     D = value("D", "force", "Radial force at the crank pin, positive toward the shaft")
-    T = value("T", "force", "Tangential force at the crank pin, positive when it drives")
+    T = value("T", "force", "Tangential force M/R: the torque on the shaft over the crank radius")
+    T_pin = value(
+        "T_Z",
+        "force",
+        "Tangential force of the rod on the crank pin, where its friction makes it another",
+    )
     A_D = value("A_D", "force", "Force on bearing A along D, in the frame rotating with the throw")
     A_T = value("A_T", "force", "Force on bearing A along T")
     B_D = value("B_D", "force", "Force on bearing B, next to the flywheel, along D")
@@ -223,14 +229,17 @@ class StressColumns(AtAngles):
     def answers(self) -> ValuesById:
         """The columns by id; of the stresses those of the parts that are examined."""
         A, B = self._body.A, self._body.B
+        state = self._state
         found = {
-            "D": self._state.D,
-            "T": self._state.T,
+            "D": state.D,
+            "T": state.T,
             "A_D": A.real,
             "A_T": A.imag,
             "B_D": B.real,
             "B_T": B.imag,
         }
+        if state.T_pin is not None:
+            found["T_pin"] = state.T_pin
         for place in places(self._body):
             for id, stress in (
                 (f"sigma_{place.part}", place.combined),
@@ -474,7 +483,9 @@ class CrankshaftStrength(Results):
         pieces, state = self.forces.pieces, self.forces.samples
         body = self._body(on_pin(state).complex, state.angle, pieces)
         return self.forces.result(
-            pieces.largest(body.equilibrium_residual(state.T * state.mechanism.crank))
+            pieces.largest(
+                body.equilibrium_residual(state.tangential_at_pin * state.mechanism.crank)
+            )
         )
 
     # the two positions of the book, and the worst of the cycle

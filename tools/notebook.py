@@ -14,7 +14,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-_NOTEBOOK = Path(__file__).parent / "notebook.ipynb"
+_NOTEBOOK = Path(__file__).parent.parent / "docs" / "notebook.ipynb"
 
 
 def page() -> str:

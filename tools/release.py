@@ -1,4 +1,4 @@
-"""Make a release: python docs/release.py 0.2.0, on a clean main branch; --dry-run shows what it would do.
+"""Make a release: python tools/release.py 0.2.0, on a clean main branch; --dry-run shows what it would do.
 
 Sets the version, dates the changelog, runs .ci/run, commits and tags, and builds wheel and sdist into dist/.
 """

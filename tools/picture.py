@@ -1,6 +1,6 @@
 """Draw the picture of the README: what a terminal shows.
 
-python docs/picture.py > docs/terminal.svg
+python tools/picture.py > docs/terminal.svg
 """
 
 from __future__ import annotations

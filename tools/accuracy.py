@@ -1,6 +1,6 @@
 """Write docs/accuracy.md and docs/accuracy.svg: a real run of `kurbel accuracy`, explained.
 
-python docs/accuracy.py
+python tools/accuracy.py
 
 The numbers in the explanation are read from the run; times belong to the machine that the page names.
 """
@@ -25,7 +25,7 @@ from kurbel.render.output import write_out
 from kurbel.report.accuracy import accuracy_report, extremes_report
 from kurbel.tables.tables import PlaceTable, Report
 
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).parent.parent / "docs"
 PICTURE = "accuracy.svg"
 EQUIDISTANT = ("trapezium rule", "largest ordinate")
 
@@ -177,7 +177,7 @@ Traces, journals in the bearings of a crankshaft, and an effort of which only th
 calculation in this command: it says so. All else is compared with free bodies of every member: a rod as a rigid body,
 friction in pins, yokes and rings, other mechanisms by where their joints are, events of a slide valve by searching.
 
-`python docs/accuracy.py` writes this page, `benchmarks/stiff_scenes.py` the references of the stiff scenes,
+`python tools/accuracy.py` writes this page, `benchmarks/stiff_scenes.py` the references of the stiff scenes,
 `benchmarks/model_and_data.py` has the errors of data and model.
 
 The picture shows time over error; a line joins the results of one method for one machine. The error falls to the right;

@@ -1,6 +1,6 @@
 """The page of the limits of size: measured processor time and memory of commands that grow.
 
-python docs/size.py > docs/size.md
+python tools/size.py > docs/size.md
 
 It takes about two minutes. Times are of the machine that runs it.
 """
@@ -26,7 +26,7 @@ CONFIGS = Path(__file__).parent.parent / "configs"
 _HEAD = f"""# Limits of size
 
 How large traces, sweeps and machines may be, and what they cost. Times are processor times of one run on one machine
-({{processor}}, Python {{python}}), memory is the peak of the process; `python docs/size.py` measures them anew.
+({{processor}}, Python {{python}}), memory is the peak of the process; `python tools/size.py` measures them anew.
 `kurbel --version` takes {{start}}.
 
 | what | limit |

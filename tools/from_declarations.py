@@ -154,18 +154,23 @@ def _records() -> Iterator[str]:
 
 def _keys(keys: Keys) -> str:
     rows = (
-        (f"`{word}`", key.symbol, key.text, _written(word, key), _absent(keys, word))
+        (f"`{word}`", key.symbol, _meaning(key), _written(word, key), _absent(keys, word))
         for word, key in _with_cases(keys)
         if not isinstance(key.form, Inline)
     )
     return _table(("key", "symbol", "meaning", "written", "if absent"), rows)
 
 
+def _meaning(key: Key) -> str:
+    """Return what a key means, and the rule of thumb for its size."""
+    return f"{key.text}; usual: {key.usual}" if key.usual else key.text
+
+
 def _written(word: str, key: Key) -> str:
     """Return how a value is written: as its form says where that shows it, else by an example."""
     name = word.rpartition(".")[2]
     example = key.line(name).removeprefix(f"{name}: ")
-    return key.form.written if "`" in key.form.written or not example else f"`{example}`"
+    return key.written if "`" in key.written or not example else f"`{example}`"
 
 
 def _with_cases(keys: Keys) -> Iterator[tuple[str, Key]]:

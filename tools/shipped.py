@@ -12,7 +12,7 @@ from typing import Any
 
 from click.testing import CliRunner
 
-import gallery  # docs/gallery.py
+import gallery  # tools/gallery.py
 from kurbel.cli import kurbel
 from kurbel.render.text import Look
 from kurbel.tables.tables import grouped, together

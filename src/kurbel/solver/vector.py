@@ -1,0 +1,21 @@
+"""A force in a plane."""
+
+from typing import Any, NamedTuple
+
+from kurbel.arrays import Number
+
+Force = Any
+"""A force D + iT in N, or the moments of such forces in N m: complex, a number or an array (…). mypy has no one type
+for it: the sum of a complex128 and a float is to it a complex number of any precision."""
+
+
+class Vector(NamedTuple):
+    """A force in N along D and along T."""
+
+    D: Number
+    T: Number
+
+    @property
+    def complex(self) -> Force:
+        """D + iT."""
+        return self.D + 1j * self.T
