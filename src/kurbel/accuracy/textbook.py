@@ -351,10 +351,11 @@ class TextbookCylinder:
             loads, losses, on_crank = self._on_rod(phi, pose, sense, push, side)
         else:
             loads, losses, on_crank = self._on_yoke(phi, sense, push, side)
-        T = loads.Z[0] * mp.sinpi(phi / 180) + loads.Z[1] * mp.cospi(phi / 180)
-        M = T * self.motion.r - on_crank
+        ahead = loads.Z[0] * mp.sinpi(phi / 180) + loads.Z[1] * mp.cospi(phi / 180)
+        M = ahead * self.motion.r - on_crank
         friction = -sense * (loads.drag + steady)
         kinks = (*loads.kinks, gas.difference)
+        T = M / self.motion.r
         return Forces(pose.slope, gas.force, gas.driving, friction, losses, T, M, kinks)
 
     def _gas(self, pose: Stance, lines: list[list[Line]]) -> Gas:
