@@ -10,7 +10,7 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.stress import CrankshaftStrength, Place, places
+from kurbel.solver.chapters.stress import Place, ThrowStrength, places
 from kurbel.solver.shaft import FreeBody
 from machines import constant_pressure
 
@@ -34,8 +34,8 @@ def shaft(**changed: Any) -> Crankshaft:
 
 def body(D: float, T: float, weight: tuple[float, float] = (0.0, 0.0), **changed: Any) -> FreeBody:
     """The crankshaft above on a crank of 0.3 m, under these forces on its pin and at its flywheel in N."""
-    pin, turned = (np.array([complex(*one)]) for one in ((D, T), weight))
-    return FreeBody(shaft(**changed), 0.3, pin, turned)
+    pin, turned = np.array([complex(D, T)]), np.array([complex(*weight)])
+    return FreeBody(shaft(**changed), 0.3, [pin], turned)
 
 
 def place_at(body: FreeBody, part: str, name: str) -> Place:
@@ -49,10 +49,10 @@ def strength(
     card: Any = None,
     rpm: float | None = None,
     **cylinder: Any,
-) -> CrankshaftStrength:
+) -> ThrowStrength:
     """Solve a single-acting machine of 0.4 m bore with this crankshaft; 10 bar all the time without a card."""
     piston = Piston(0.4, indicator=Indicator(card or constant_pressure(1e6)))
     own = Cylinder(mechanism or SliderCrank(0.3, 1.5), pistons=(piston,), **cylinder)
     return Case(
         Machine((own,), speed=None if rpm is None else rpm / 60, crankshaft=crankshaft)
-    ).stress
+    ).stress.throws[0]

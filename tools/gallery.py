@@ -27,6 +27,7 @@ TEACHING = {
     "diesel-two-stroke": "card",
     "four-cylinder-generator": "effort",
     "four-in-line": "free-orders",
+    "four-throws": "throw-stress",
     "gas-engine": "throw-stress",
     "gas-engine-double-acting": "effort",
     "generator-coupling": "modes",

@@ -126,8 +126,8 @@ def test_rivals_without_corners_are_compared_at_the_time_of_kurbel() -> None:
             SMOOTH.replace(
                 "flywheel:",
                 "friction: {journals: 0.1, journal_diameter: 90 mm}, "
-                "crankshaft: {a: 200 mm, b: 200 mm, web_distance: 90 mm, web_thickness: 50 mm, "
-                "web_width: 150 mm, pin_diameter: 90 mm, pin_length: 100 mm}, flywheel:",
+                "crankshaft: {a: 200 mm, b: 200 mm, web_distance: 130 mm, web_thickness: 60 mm, "
+                "web_width: 120 mm, pin_diameter: 90 mm, pin_length: 100 mm}, flywheel:",
             ),
             "A_f",
             "journals that rub in the bearings of a crankshaft",

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import kurbel
+from kurbel.crank_angle import CrankAngle
 from kurbel.machine_file import loads
+from kurbel.mechanisms.four_bar import FourBar
 from kurbel.solver.case import Case
 from kurbel.solver.effort import torque_of_inertia
 from kurbel.solver.state import reduced_inertia
@@ -113,3 +115,34 @@ def test_a_rod_without_mass_loads_both_pins_along_its_line(degrees: float) -> No
     for pin in Case(loads(text)).bearings.parts[:2]:
         (direction,) = pin.at([degrees])["load_rod"]
         assert direction in (0.0, 180.0)
+
+
+def test_rings_that_the_gas_presses_never_drive() -> None:
+    """Whether the gas pushes or draws: f π d h k |Δp| against the motion."""
+    gas = "{constant: {expansion: -0.4 bar, compression: 2 bar}}"
+    rings = "friction: {rings: {count: 3, height: 10 mm, coefficient: 0.08, pressure: gas}}\n"
+    text = f"{SHAPE}bore: 0.2 m\nspeed: 60 rpm\nindicator: {{head_end: {gas}}}\n{rings}"
+    pressure_of_rings = 0.08 * math.pi * 0.2 * 0.03
+    state = Case(loads(text)).cylinders[0].at([60.0, 250.0])
+    assert state.F_friction == pytest.approx(
+        [-0.4e5 * pressure_of_rings, 2e5 * pressure_of_rings], rel=1e-12
+    )
+
+
+def test_where_the_acceleration_of_the_book_is_zero() -> None:
+    """R 291: cos φ + λ cos 2φ = 0."""
+    motion = Case(loads(f"{SHAPE}speed: 60 rpm\n")).cylinders[0].motion
+    roots = np.radians(motion.phi_b_zero_book)
+    assert np.cos(roots) + np.cos(2 * roots) / 3.5 == pytest.approx([0, 0], abs=1e-14)
+
+
+@pytest.mark.parametrize(("coupler", "rocker"), [(0.7, 0.7), (0.7, 0.8)])
+def test_the_working_swing_is_the_slower_one(coupler: float, rocker: float) -> None:
+    """On either side of a² + d² = b² + c² another dead centre begins it; its crank angle by a fine sum of θ′."""
+    linkage = FourBar(0.3, coupler, rocker, 1.0)
+    degrees = (np.arange(36_000) + 0.5) / 100
+    rises = linkage.slope(CrankAngle.of(degrees)) > 0
+    slower = 360 * max(rises.mean(), 1 - rises.mean())
+    assert linkage.phi_work == pytest.approx(slower, abs=0.02)
+    assert linkage.time_ratio == pytest.approx(slower / (360 - slower), rel=1e-3)
+    assert linkage.works_outward == (rises.mean() > 0.5)

@@ -252,6 +252,16 @@ def below(figures: list[Any], held: bool, omega: float) -> int:
     return int((np.linalg.eigvalsh(scaled) < omega**2).sum())
 
 
+def test_a_heavy_segment_behind_a_gear() -> None:
+    """Stiffness and inertia both go with u²: the wave along the segment is as long as without the gear."""
+    plain = shaft(DISC, f"{TUBE}, length: 3600 mm", DISC)
+    geared = shaft("inertia: 1e-12 kg m2", "gear: 2", DISC, f"{TUBE}, length: 3600 mm", DISC)
+    assert geared.chain.segment_inertias == pytest.approx(
+        4 * plain.chain.segment_inertias, rel=1e-15
+    )
+    assert frequencies(geared) == pytest.approx(frequencies(plain), rel=1e-11)
+
+
 def test_density_needs_a_length() -> None:
     with pytest.raises(KurbelError, match="density"):
         shaft(DISC, "stiffness: 1e5 N m/rad, density: 7850 kg/m3", DISC)

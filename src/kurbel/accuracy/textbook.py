@@ -351,8 +351,9 @@ class TextbookCylinder:
             loads, losses, on_crank = self._on_rod(phi, pose, sense, push, side)
         else:
             loads, losses, on_crank = self._on_yoke(phi, sense, push, side)
-        ahead = loads.Z[0] * mp.sinpi(phi / 180) + loads.Z[1] * mp.cospi(phi / 180)
-        M = ahead * self.motion.r - on_crank
+        T_pin = loads.Z[0] * mp.sinpi(phi / 180) + loads.Z[1] * mp.cospi(phi / 180)
+        M = T_pin * self.motion.r - on_crank
+        T = M / self.motion.r
         friction = -sense * (loads.drag + steady)
         kinks = (*loads.kinks, gas.difference)
         T = M / self.motion.r

@@ -195,12 +195,12 @@ def _crankshaft_entries(case: Case) -> Iterator[CheckEntry]:
         return
     for text in as_far_as_solved(bearing_warnings(case), "bearings"):
         yield CheckEntry("bearings", text, "warning", path)
-    from kurbel.solver.shaft import shaft_obstacle
+    from kurbel.solver.shaft import shaft_obstacle, strength_obstacle
 
     if not shaft_obstacle(machine):
         yield CheckEntry("computed", "loads on pins and main bearings")
-    if machine.strength_obstacle:
-        yield _left_out(f"strength: {machine.strength_obstacle}", path)
+    if strength_obstacle(machine):
+        yield _left_out(f"strength: {strength_obstacle(machine)}", path)
     else:
         yield from _computed(
             "forces on the bearings, stresses in pin and webs", strength_left_out(machine), path

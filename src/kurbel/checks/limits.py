@@ -202,7 +202,9 @@ def holders(case: Case, name: str) -> list[Holder]:
         own = []
         for subject in subjects_of(case, command, pistons=bool(scope)):
             quantity = subject.lists.key_values(command).get(id)
-            if quantity is None:
+            # of the throws of a crankshaft the worst counts, unless one is named
+            is_in_worst = command == "stress" and not subject.whole and subject.name != scope
+            if quantity is None or is_in_worst:
                 continue
             one, of_cylinder = Holder(subject, quantity, command), subject.name in cylinders
             owner = subject.name if of_cylinder or subject.name == scope else subject.of or MACHINE

@@ -227,7 +227,9 @@ class Machine(Record):
         _coupling, "Elastic coupling to a driven moment of inertia", absent="rigid"
     )
     crankshaft: Crankshaft | None = field(
-        _crankshaft, "One throw between bearings A and B", absent="no strength check"
+        _crankshaft,
+        "The throw between bearings A and B, the same for all cylinders",
+        absent="no strength check",
     )
     counterweights: SharedCounterweights | tuple[Counterweight, ...] = counterweights()
     balance_shafts: tuple[BalanceShaft, ...] = field(
@@ -412,7 +414,11 @@ class Machine(Record):
                 ("cases", index, "name"), name in cases[:index], f"two cases are called '{name}'"
             )
         pistons = (name for cylinder in self.cylinders for name in self.piston_names(cylinder))
-        scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons)))
+        several = self.crankshaft is not None and len(self.cylinders) > 1
+        throws = (
+            [f"throw {number}" for number in range(1, len(self.cylinders) + 1)] if several else []
+        )
+        scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons, *throws)))
         for key, figures in (("limits", self.limits), ("expect", self.expect)):
             for id, figure in figures:
                 if (scope := scoped(id)[0]) and scope not in scopes:
@@ -487,11 +493,9 @@ class Machine(Record):
             return (
                 "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
             )
-        if len(self.cylinders) > 1:
-            return f"{len(self.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
-        cylinder = self.cylinders[0]
-        if cylinder.mechanism.quick_return or cylinder.mechanism.radial(CrankAngle.of(0.0)) is None:
-            return f"the force on the crank pin of a {cylinder.mechanism.name} is not known; give a slider-crank"
-        if not any(piston.indicator for piston in cylinder.pistons):
+        for mechanism in (cylinder.mechanism for cylinder in self.cylinders):
+            if mechanism.quick_return or mechanism.radial(CrankAngle.of(0.0)) is None:
+                return f"the force on the crank pin of a {mechanism.name} is not known; give a slider-crank"
+        if not any(piston.indicator for cylinder in self.cylinders for piston in cylinder.pistons):
             return "no pressure loads the crankshaft; give 'bore' and 'indicator'"
         return ""

@@ -40,6 +40,14 @@ class Crankshaft(Record):
     web_width: float = field("length", "Width of a web across its arm", "w", above=0)
     pin_diameter: float = field("length", "Diameter of the crank pin", "d_z", above=0)
     pin_length: float = field("length", "Length of the crank pin", "l_z", above=0)
+    rod_spacing: float | None = field(
+        "length",
+        "Distance of the middles of neighbouring rods on one crank pin, of which that of the cylinder that is first in "
+        "the file is next to bearing A; 0 mm: fork and blade",
+        "s",
+        least=0,
+        absent="pin_length over the number of rods on the pin",
+    )
     journal_diameter: float | None = field(
         "length", "Diameter of the journals", "d_j", above=0, absent="journals not examined"
     )
@@ -129,6 +137,13 @@ class Crankshaft(Record):
             "web_distance less web_thickness",
             numbers,
         )
+        if self.rod_spacing is not None:
+            too_far = self.rod_spacing >= self.pin_length
+            yield Rule(
+                "rod_spacing",
+                too_far,
+                "{rod_spacing} is not less than the length of the pin ({pin_length})",
+            )
         yield from self._journal_rules()
 
     def _journal_rules(self) -> Iterator[Rule]:
@@ -171,6 +186,11 @@ class Crankshaft(Record):
     def span(self) -> float:
         """Distance in m from bearing A to bearing B."""
         return self.b - self.place_A
+
+    def rod_places(self, count: int) -> list[Number]:
+        """Return the places u_k in m of so many rods on one pin from its middle, positive toward B."""
+        spacing = self.pin_length / count if self.rod_spacing is None else self.rod_spacing
+        return [(number - (count - 1) / 2) * spacing for number in range(count)]
 
     @property
     def _web_end(self) -> float:

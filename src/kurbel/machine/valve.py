@@ -101,7 +101,11 @@ class Link(Record):
     """Stephenson's link between the rods of two eccentrics, one for each sense of rotation."""
 
     half_length: float = field(
-        "length", "Half the length of the link, between the pins of the rods", "c", above=0
+        "length",
+        "Half the length of the link, between the pins of the rods",
+        "c",
+        above=0,
+        example="230 mm",
     )
     position: float = field(
         "ratio",
@@ -109,6 +113,7 @@ class Link(Record):
         "u/c",
         least=0,
         most=1,
+        example="0.5",
     )
     rods: str = field(
         ("open", "crossed"),
@@ -266,6 +271,7 @@ class Valve(Record):
         "Eccentricity, half the travel",
         "r",
         above=0,
+        example="45 mm",
         instead="travel",
         gives=lambda given: {"travel": 2 * given["eccentricity"]},
     )
@@ -273,18 +279,21 @@ class Valve(Record):
         _LENGTH,
         "Overlap beyond the port on the steam side, with the valve in its middle; one, or of each end",
         "S",
+        example="22 mm",
     )
     exhaust_lap: Length = field(
         _LENGTH,
         "Overlap on the exhaust side; negative where the port is then open; one, or of each end",
         "E",
         default=0.0,
+        example="2 mm",
         absent="0 mm",
     )
     lead: Length | None = field(
         _LENGTH,
         "Opening to steam at the dead centre, by which eccentric and spindle are set; one, or of each end",
         "v",
+        example="3 mm",
         absent="follows from `angle_of_advance`",
     )
     angle_of_advance: float | None = field(
@@ -293,6 +302,7 @@ class Valve(Record):
         "δ",
         least=0,
         most=90,
+        example="34 deg",
         instead="lead",
         absent="follows from `lead`",
     )
@@ -302,6 +312,7 @@ class Valve(Record):
         "l",
         above=0,
         default=math.inf,
+        example="1200 mm",
         absent="infinite, as Zeuner draws it",
     )
     admission: str = field(
@@ -321,6 +332,7 @@ class Valve(Record):
         "Width of the ports along the travel",
         "a",
         above=0,
+        example="30 mm",
         default=math.inf,
         absent="no limit",
     )
@@ -329,6 +341,7 @@ class Valve(Record):
         "Length of the ports across the travel",
         "b",
         above=0,
+        example="280 mm",
         needs="port_width",
         absent="no speed of the steam",
     )

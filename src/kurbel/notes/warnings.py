@@ -492,8 +492,27 @@ def shells(case: Case) -> tuple[bool, str]:
     )
 
 
+def rods_on_pin(spacing: float | None) -> str:
+    """Return the note on where several rods load one pin; spacing: `rod_spacing` in m."""
+    if spacing is None:
+        return (
+            "Rods on one pin are side by side, each on an equal part of its length, that of the cylinder which is "
+            "first in the file next to bearing A."
+        )
+    if spacing == 0:
+        return "Rods on one pin all load it in its middle, as fork and blade."
+    return (
+        f"Rods on one pin are {show(spacing, 'length')} apart, that of the cylinder which is first in the "
+        "file next to bearing A."
+    )
+
+
 def _strength_warnings(case: Case) -> Iterator[str]:
-    if not case.machine.strength_obstacle:
+    if case.machine.strength_obstacle:
+        return
+    from kurbel.solver.shaft import strength_obstacle
+
+    if not strength_obstacle(case.machine):
         cool, verdict = shells(case)
         if not cool:
             yield verdict

@@ -75,24 +75,26 @@ def total(*terms: N) -> N:
     """
     if all(isinstance(term, (float, int)) for term in terms):
         return math.fsum(terms)  # type: ignore[return-value]
-    whole, missed = terms[0], terms[0] * 0
+    result = terms[0]
+    missed = terms[0] * 0
     for term in terms[1:]:
-        before, whole = whole, whole + term
-        missed = missed + lost(before, term, whole)
-    return whole + missed
+        before = result
+        result = before + term
+        missed = missed + lost(before, term, result)
+    return result + missed
 
 
-def lost(before: N, term: N, whole: N) -> N:
+def lost(before: N, term: N, result: N) -> N:
     """Return by what a sum misses its two terms as it is rounded, exactly (Knuth)."""
-    of_term = whole - before
-    return (before - (whole - of_term)) + (term - of_term)
+    of_term = result - before
+    return (before - (result - of_term)) + (term - of_term)
 
 
 _ROUNDING = 16 * 2.0**-52
 """Relative to the sum of the sizes of terms: a smaller sum of them is rounding."""
 
 
-def unless_cancelled(whole: Any, sizes: Number, rounding: float = _ROUNDING) -> Any:
+def unless_cancelled(result: Any, sizes: Number, rounding: float = _ROUNDING) -> Any:
     """Return a sum, as an array; exactly 0 where nothing is left of its terms but rounding.
 
     sizes: the sum of the sizes of the terms; of complex terms either part may cancel by itself. rounding: relative to
@@ -101,17 +103,16 @@ def unless_cancelled(whole: Any, sizes: Number, rounding: float = _ROUNDING) -> 
     >>> unless_cancelled(0.1 + 0.2 - 0.3, 0.6), unless_cancelled(0.1, 0.6)
     (array(0.), array(0.1))
     """
-    if np.iscomplexobj(whole):
-        return unless_cancelled(whole.real, sizes, rounding) + 1j * unless_cancelled(
-            whole.imag, sizes, rounding
-        )
-    return np.where(np.abs(whole) > rounding * sizes, whole, 0.0)
+    if np.iscomplexobj(result):
+        real = unless_cancelled(result.real, sizes, rounding)
+        imaginary = unless_cancelled(result.imag, sizes, rounding)
+        return real + 1j * imaginary
+    return np.where(np.abs(result) > rounding * sizes, result, 0.0)
 
 
 def spread(number: Any, machine: Indices | None) -> Any:
     """Return the numbers (machines,) of the machines in an index; a single number is returned as it is."""
-    return (
-        number[machine]
-        if isinstance(number, np.ndarray) and number.ndim and machine is not None
-        else number
-    )
+    is_of_machines = isinstance(number, np.ndarray) and number.ndim > 0
+    if is_of_machines and machine is not None:
+        return number[machine]
+    return number

@@ -79,19 +79,21 @@ class Radau:
     def __init__(self, count: int) -> None:
         # Golub: Jacobi matrix of the Legendre polynomials whose last entry puts an eigenvalue at 1
         n = np.arange(count)
-        off = n[1:] / np.sqrt(4.0 * n[1:] ** 2 - 1)
-        last = np.where(n == count - 1, count / (2 * count - 1), 0.0)
-        self.nodes = np.append(
-            np.linalg.eigvalsh(np.diag(last) + np.diag(off, 1) + np.diag(off, -1))[:-1], 1.0
-        )
+        beside_diagonal = n[1:] / np.sqrt(4.0 * n[1:] ** 2 - 1)
+        diagonal = np.where(n == count - 1, count / (2 * count - 1), 0.0)
+        jacobi = np.diag(diagonal) + np.diag(beside_diagonal, 1) + np.diag(beside_diagonal, -1)
+        self.nodes = np.append(np.linalg.eigvalsh(jacobi)[:-1], 1.0)
+
+        # values at the nodes alone
         at_nodes = chebyshev(self.nodes, count + 1)
         self.area = at_nodes @ integral_of_series(count) @ np.linalg.inv(at_nodes[:, :count])
-        places = np.append(-1.0, self.nodes)
-        self.series = np.linalg.inv(chebyshev(places, count + 1))
-        self.halving = (
-            chebyshev(np.concatenate((places - 1, places + 1)) / 2, count + 1) @ self.series
-        )
         self.from_lobatto = at_nodes[:, :count] @ rule(count).series
+
+        # the start and the values at the nodes
+        positions = np.append(-1.0, self.nodes)
+        self.series = np.linalg.inv(chebyshev(positions, count + 1))
+        of_halves = np.concatenate((positions - 1, positions + 1)) / 2
+        self.halving = chebyshev(of_halves, count + 1) @ self.series
         self.to_lobatto = chebyshev(rule(count).nodes, count + 1) @ self.series
 
 
@@ -123,27 +125,36 @@ class Periodic(NamedTuple):
             return
         if np.isnan(self.short[0]):
             raise Unsettled
+        # the share of the height that is left at every node, in order of the angle
         system = _System(self.equation, self.pieces, self.short)
         share = (1 + self.y[self.equation.bounded, 1:] / system.height).T
-        degrees = self.pieces.low + self.pieces.half * (1 + system.rule.nodes[:, None])
-        stops = share.min() <= _STANDING
-        raise Unsettled(
-            float(self.short[0]), float(degrees.T.ravel()[np.argmin(share)]) if stops else None
-        )
+        is_at_rest = share.min() <= _STANDING
+        if not is_at_rest:
+            raise Unsettled(float(self.short[0]))
+        degrees = (self.pieces.low + self.pieces.half * (1 + system.rule.nodes[:, None])).T
+        raise Unsettled(float(self.short[0]), float(degrees.ravel()[np.argmin(share)]))
 
     @property
     def growth(self) -> Array:
         """Logarithms of what is left of small disturbances after a cycle (Floquet), (machines,)."""
+        # what each piece makes of a disturbance at its start
         y = np.where(self.pieces.of(self.failed), 0.0, self.y)
         system = _System(self.equation, self.pieces, np.zeros(self.pieces.count))
         _, lack, stiffness = system.lacking(y)
-        unit, size = np.eye(len(y)), np.zeros(self.pieces.count)
-        whole = np.broadcast_to(unit, (len(size), *unit.shape))
-        for gain in np.swapaxes(system.padded(system.inside(lack, stiffness)[1][-1], unit), 0, 1):
-            whole = gain @ whole
-            largest = np.maximum(np.abs(whole).max(axis=(1, 2)), 1e-300)
-            whole, size = whole / largest[:, None, None], size + np.log(largest)
-        return size + np.log(np.maximum(np.abs(np.linalg.eigvals(whole)).max(axis=-1), 5e-324))
+        _, gains = system.inside(lack, stiffness)
+        unit = np.eye(len(y))
+        padded_gains = system.padded(gains[-1], unit)
+
+        # their product over the cycle, with its size apart so that nothing overflows
+        size = np.zeros(self.pieces.count)
+        product = np.broadcast_to(unit, (len(size), *unit.shape))
+        for gain in np.swapaxes(padded_gains, 0, 1):
+            product = gain @ product
+            largest = np.maximum(np.abs(product).max(axis=(1, 2)), 1e-300)
+            product = product / largest[:, None, None]
+            size = size + np.log(largest)
+        multipliers = np.abs(np.linalg.eigvals(product)).max(axis=-1)
+        return size + np.log(np.maximum(multipliers, 5e-324))
 
 
 def periodic(equation: Equation, pieces: Pieces) -> Periodic:
@@ -153,33 +164,37 @@ def periodic(equation: Equation, pieces: Pieces) -> Periodic:
     followed down to the given one. What a linear equation leaves open is as small as can be.
     """
     pieces = replace(pieces, rule=rule(max(_FEWEST, len(pieces.rule.nodes))))
-    still = _Solution(
-        pieces, np.zeros((equation.unknowns, len(pieces.rule.nodes) + 1, len(pieces.half)))
-    )
+    not_eased = np.zeros(pieces.count)
+    start = np.zeros((equation.unknowns, len(pieces.rule.nodes) + 1, len(pieces.half)))
+    still = _Solution(pieces, start)
     with np.errstate(all="ignore"):  # a step too far may overflow; it is taken back
-        found, good = _settled(equation, still, np.zeros(pieces.count))
-        if good.all() or equation.bounded is None:
-            return Periodic(equation, *found, ~good, np.full(pieces.count, np.nan))
-        own = np.maximum(
-            _largest(pieces, _System(equation, pieces, np.zeros(pieces.count)).height), 0.0
-        )
-        found = _joined([found.of(good), still.of(~good)])
-        running, height = ~good & np.isfinite(own) & (own > 0), np.where(good, own, np.nan)
-        target, share = own * _ENDLESS, np.full_like(own, _STEP)
+        solution, is_settled = _settled(equation, still, not_eased)
+        if is_settled.all() or equation.bounded is None:
+            return Periodic(equation, *solution, ~is_settled, np.full(pieces.count, np.nan))
+
+        # the other machines start again from y = 0, with an endless height
+        heights = _System(equation, pieces, not_eased).height
+        least_height = np.maximum(_largest(pieces, heights), 0.0)
+        solution = _joined([solution.of(is_settled), still.of(~is_settled)])
+        is_running = ~is_settled & np.isfinite(least_height) & (least_height > 0)
+        height = np.where(is_settled, least_height, np.nan)
+        target = least_height * _ENDLESS
+        share = np.full_like(least_height, _STEP)
         for _ in range(_MOST_STEPS):
-            running = running & ~(height <= own) & (share <= _SHORTEST)
-            if not running.any():
+            is_running = is_running & ~(height <= least_height) & (share <= _SHORTEST)
+            if not is_running.any():
                 break
-            finer, better = _settled(
-                equation, found.of(running), np.where(running, target - own, 0.0)
-            )
-            found = _joined([found.of(~better), finer.of(better)])
-            height = np.where(better, target, height)
-            share = np.where(
-                better, np.maximum(share**1.5, _STEP), np.where(running, np.sqrt(share), share)
-            )
-            target = np.maximum(height * share, own)
-    return Periodic(equation, *found, ~(height <= own), height - own)
+            # solve at the lower height; where that fails, keep the solution and cut the height by less
+            eased = np.where(is_running, target - least_height, 0.0)
+            lower, is_solved = _settled(equation, solution.of(is_running), eased)
+            solution = _joined([solution.of(~is_solved), lower.of(is_solved)])
+            height = np.where(is_solved, target, height)
+            smaller_cut = np.where(is_running, np.sqrt(share), share)
+            larger_cut = np.maximum(share**1.5, _STEP)
+            share = np.where(is_solved, larger_cut, smaller_cut)
+            target = np.maximum(height * share, least_height)
+    has_failed = ~(height <= least_height)
+    return Periodic(equation, *solution, has_failed, height - least_height)
 
 
 class _Solution(NamedTuple):
@@ -195,22 +210,23 @@ class _Solution(NamedTuple):
 
 
 def _joined(parts: Sequence[_Solution]) -> _Solution:
-    whole, (y,) = joined_pieces(
-        [(part.pieces, np.arange(len(part.pieces.half)), [part.y]) for part in parts]
-    )
-    return _Solution(whole, y)
+    """Return solutions on different pieces as one."""
+    taken = [(part.pieces, np.arange(len(part.pieces.half)), [part.y]) for part in parts]
+    pieces, (y,) = joined_pieces(taken)
+    return _Solution(pieces, y)
 
 
 def _largest(pieces: Pieces, values: Array) -> Array:
     """Return the largest of values (…, pieces) of every machine (machines,), −∞ of one that has no pieces here."""
-    found = np.full(pieces.count, -np.inf)
-    np.maximum.at(found, pieces.machine, values.reshape(-1, len(pieces.machine)).max(axis=0))
-    return found
+    of_piece = values.reshape(-1, len(pieces.machine)).max(axis=0)
+    largest = np.full(pieces.count, -np.inf)
+    np.maximum.at(largest, pieces.machine, of_piece)
+    return largest
 
 
 def _swing(pieces: Pieces, y: Array) -> Array:
     """Return the range of each unknown (m, …, pieces) in every machine, (m, machines)."""
-    return np.array([_largest(pieces, one) + _largest(pieces, -one) for one in y])
+    return np.array([_largest(pieces, unknown) + _largest(pieces, -unknown) for unknown in y])
 
 
 def _settled(equation: Equation, left: _Solution, eased: Array) -> tuple[_Solution, Flags]:
@@ -219,31 +235,42 @@ def _settled(equation: Equation, left: _Solution, eased: Array) -> tuple[_Soluti
     A machine that is smooth is done with; the others go on without it.
     """
     count = left.pieces.count
-    settled, done = np.zeros(count, dtype=bool), []
+    settled = np.zeros(count, dtype=bool)
+    done = []
     for _ in range(_ROUNDS):
-        system, pieces, of = _System(equation, left.pieces, eased), left.pieces, left.pieces.machine
-        y, good = system.solved(left.y)
+        pieces = left.pieces
+        machine = pieces.machine
+        system = _System(equation, pieces, eased)
+        y, is_solved = system.solved(left.y)
+
+        # pieces are rough on which the last two coefficients are more than rounding and noise
         tails = np.abs(system.rule.series[-2:] @ y).sum(axis=1)
-        least = TAIL * _swing(pieces, y) + 4e-15 * _largest(pieces, np.abs(y)) + equation.noise
-        rough = (tails > least[:, of]).any(axis=0) & (pieces.half > _NARROWEST / 2) & good[of]
-        unsmooth = np.bincount(of[rough], minlength=count) > 0
-        settled |= good & ~unsmooth
-        going = unsmooth & (np.bincount(of, minlength=count) <= _MOST_PIECES)
-        rough = rough[going[of]]
-        done.append(_Solution(pieces, y).of(~going))
-        left = _Solution(pieces, y).of(going)
-        if not len(rough):
+        rounding = TAIL * _swing(pieces, y) + 4e-15 * _largest(pieces, np.abs(y))
+        least = rounding + equation.noise
+        is_rough = (tails > least[:, machine]).any(axis=0) & (pieces.half > _NARROWEST / 2)
+        is_rough &= is_solved[machine]
+        has_rough = np.bincount(machine[is_rough], minlength=count) > 0
+        settled |= is_solved & ~has_rough
+
+        # machines that have any go on, if they have not too many pieces
+        goes_on = has_rough & (np.bincount(machine, minlength=count) <= _MOST_PIECES)
+        is_rough = is_rough[goes_on[machine]]
+        done.append(_Solution(pieces, y).of(~goes_on))
+        left = _Solution(pieces, y).of(goes_on)
+        if not len(is_rough):
             break
 
-        halves, (m, nodes, _) = left.pieces.halved(rough), y.shape
-        fine = (system.rule.halving @ left.y[..., rough]).reshape(m, 2, nodes, -1)
+        # halve the rough pieces
+        halves = left.pieces.halved(is_rough)
+        m, nodes, _ = y.shape
+        fine = (system.rule.halving @ left.y[..., is_rough]).reshape(m, 2, nodes, -1)
         fine = fine.transpose(0, 2, 3, 1).reshape(m, nodes, -1)
         if equation.bounded is not None:  # a polynomial may fall below the bound between its nodes
             bounded = fine[equation.bounded, 1:]
-            np.maximum(bounded, -0.99 * _System(equation, halves, eased).height, out=bounded)
-        left = _joined(
-            [_Solution(left.pieces.taken(~rough), left.y[..., ~rough]), _Solution(halves, fine)]
-        )
+            height = _System(equation, halves, eased).height
+            np.maximum(bounded, -0.99 * height, out=bounded)
+        smooth = _Solution(left.pieces.taken(~is_rough), left.y[..., ~is_rough])
+        left = _joined([smooth, _Solution(halves, fine)])
     else:
         done.append(left)
     return _joined(done), settled
@@ -256,121 +283,133 @@ class _System:
     """
 
     def __init__(self, equation: Equation, pieces: Pieces, eased: Array) -> None:
-        self.equation, self.pieces = equation, pieces
-        self.rule, self.half = radau(len(pieces.rule.nodes)), np.radians(pieces.half)
+        self.equation = equation
+        self.pieces = pieces
+        self.rule = radau(len(pieces.rule.nodes))
+        self.half = np.radians(pieces.half)
+        # what depends on the angle alone, with the height last
         self.known = self.rule.from_lobatto @ equation.known(pieces)
         self.known[-1] += pieces.of(eased)
         self.height = self.known[-1]
+        # machine by machine: which row it is, the number of each piece in it, and the piece after each
         _, self._row, lengths = np.unique(pieces.machine, return_inverse=True, return_counts=True)
-        begins = np.cumsum(lengths) - lengths
-        self._place = np.arange(len(self._row)) - begins[self._row]
+        starts = np.cumsum(lengths) - lengths
+        self._number = np.arange(len(self._row)) - starts[self._row]
         self._shape = len(lengths), int(lengths.max(initial=0))
         self.after = np.arange(1, len(self._row) + 1)
-        self.after[begins + lengths - 1] = begins
+        self.after[starts + lengths - 1] = starts
 
     def lacking(self, y: Array) -> tuple[Array, Array, Array]:
         """Return what the equations lack at starts (m, pieces) and nodes (m, k, pieces), and half ∂f/∂y there.
 
         At the start of a piece that is what the end before it has more, at its nodes what the rate makes of the start.
         """
+        start = y[:, 0]
         rate, slope = self.equation.rate(self.known, y[:, 1:], self.pieces)
-        jump = np.empty_like(y[:, 0])
-        jump[:, self.after] = y[:, -1] - y[:, 0, self.after]
-        return jump, y[:, :1] + self.half * (self.rule.area @ rate) - y[:, 1:], self.half * slope
+        jump = np.empty_like(start)
+        jump[:, self.after] = y[:, -1] - start[:, self.after]
+        lack = y[:, :1] + self.half * (self.rule.area @ rate) - y[:, 1:]
+        return jump, lack, self.half * slope
 
     def inside(self, lack: Array, stiffness: Array) -> tuple[Array, Array]:
         """Return the changes at the nodes (k, pieces, m) that make up a lack, and those per change at the start."""
         m, k, count = lack.shape
-        found = np.empty((k, count, m, m + 1))
-        chunk = max(1, _AT_ONCE // (m * k) ** 2)
-        for start in range(0, count, chunk):
-            some = np.s_[start : start + chunk]
-            slopes = stiffness[..., some].transpose(3, 0, 2, 1)[:, None]
-            systems = np.eye(m * k) - (self.rule.area[:, None, :, None] * slopes).reshape(
-                -1, m * k, m * k
-            )
+        changes = np.empty((k, count, m, m + 1))
+        at_once = max(1, _AT_ONCE // (m * k) ** 2)
+        for first in range(0, count, at_once):
+            chunk = np.s_[first : first + at_once]
+            # (1 − half · area · ∂f/∂y) of every piece, over all its nodes and unknowns
+            slopes = stiffness[..., chunk].transpose(3, 0, 2, 1)[:, None]
+            products = self.rule.area[:, None, :, None] * slopes
+            systems = np.eye(m * k) - products.reshape(-1, m * k, m * k)
+            # right sides: the lack, and a unit change of each unknown at the start
             sides = np.empty((len(systems), k, m, m + 1))
-            sides[..., 0], sides[..., 1:] = lack[..., some].transpose(2, 1, 0), np.eye(m)
-            flat = sides.reshape(-1, m * k, m + 1)
+            sides[..., 0] = lack[..., chunk].transpose(2, 1, 0)
+            sides[..., 1:] = np.eye(m)
+            columns = sides.reshape(-1, m * k, m + 1)
             try:
-                solved = np.linalg.solve(systems, flat)
-            except (
-                np.linalg.LinAlgError
-            ):  # one is exactly singular: its step becomes too long, and is taken back
-                solved = np.linalg.solve(systems + 1e-14 * np.eye(m * k), flat)
-            found[:, some] = solved.reshape(sides.shape).swapaxes(0, 1)
-        return found[..., 0], found[..., 1:]
+                solved = np.linalg.solve(systems, columns)
+            except np.linalg.LinAlgError:
+                # a system is exactly singular: its step becomes too long, and is taken back
+                solved = np.linalg.solve(systems + 1e-14 * np.eye(m * k), columns)
+            changes[:, chunk] = solved.reshape(sides.shape).swapaxes(0, 1)
+        return changes[..., 0], changes[..., 1:]
 
     def padded(self, values: Array, rest: Array) -> Array:
         """Return what each piece has (pieces, …) as (rows of machines, longest, …), filled up with `rest` (…)."""
-        found = np.empty((*self._shape, *rest.shape))
-        found[:] = rest
-        found[self._row, self._place] = values
-        return found
+        rows = np.empty((*self._shape, *rest.shape))
+        rows[:] = rest
+        rows[self._row, self._number] = values
+        return rows
 
     def solved(self, y: Array) -> tuple[Array, Flags]:
         """Solve the collocation equations by Newton's method, and return which machines have settled.
 
         A machine that has settled, or fails, stays as it is. Steps are halved until less is lacking.
         """
-        pieces, of, bounded = self.pieces, self.pieces.machine, self.equation.bounded
-        going = np.bincount(of, minlength=pieces.count) > 0
-        good, previous = np.zeros_like(going), np.full(pieces.count, np.inf)
+        pieces = self.pieces
+        machine = pieces.machine
+        bounded = self.equation.bounded
+        is_running = np.bincount(machine, minlength=pieces.count) > 0
+        is_settled = np.zeros_like(is_running)
+        previous = np.full(pieces.count, np.inf)
         highest = 0.0 if bounded is None else _largest(pieces, self.height)
-
-        def size_of(jump: Array, lack: Array, _: Array) -> Array:
-            squares = np.square(jump).sum(axis=0) + np.square(lack).sum(axis=(0, 1))
-            return np.sqrt(np.bincount(of, squares, minlength=pieces.count))
 
         lacking = self.lacking(y)
         for _ in range(100):
-            now = size_of(*lacking)
-            going &= np.isfinite(now)
-            if not going.any():
+            now = self._size_of_lack(lacking)
+            is_running &= np.isfinite(now)
+            if not is_running.any():
                 break
-
-            # in a piece step = response + gain · step at its start; its last node starts the next piece
-            jump, lack, stiffness = lacking
-            response, gain = self.inside(lack, stiffness)
-            more = self.padded(response[-1] + jump[:, self.after].T, np.zeros(len(y)))
-            start = around_the_cycle(self.padded(gain[-1], np.eye(len(y))), more)[
-                self._row, self._place
-            ]
-            nodes = response + (gain @ start[:, :, None])[..., 0]
-            step = np.concatenate((start[None], nodes)).transpose(2, 0, 1)
+            step = self._newton_step(y, lacking)
             size = _largest(pieces, np.abs(step))
-            going &= np.isfinite(size)
-            step[..., ~going[of]] = 0.0
+            is_running &= np.isfinite(size)
+            step[..., ~is_running[machine]] = 0.0
 
             # far above its bound y is moved as a whole by rounding, though by nothing relative to that height
             near = np.maximum(1e-9 * _swing(pieces, y + step).max(axis=0), 1e-14 * highest)
+            # not beyond 9/10 of the way to the bound
             share = np.ones(pieces.count)
             if bounded is not None:
-                share /= np.maximum(
-                    _largest(pieces, -step[bounded, 1:] / (0.9 * (y[bounded, 1:] + self.height))),
-                    1.0,
-                )
+                room = 0.9 * (y[bounded, 1:] + self.height)
+                share /= np.maximum(_largest(pieces, -step[bounded, 1:] / room), 1.0)
+            # halved until less is lacking
             while True:
-                new = y + share[of] * step
+                new = y + share[machine] * step
                 lacking = self.lacking(new)
-                after = size_of(*lacking)
-                poor = going & (size > near) & ~(after <= (1 - share / 8) * now) & (share > 1e-6)
-                if not poor.any():
+                after = self._size_of_lack(lacking)
+                is_better = after <= (1 - share / 8) * now
+                is_poor = is_running & (size > near) & ~is_better & (share > 1e-6)
+                if not is_poor.any():
                     break
-                share = np.where(poor, share / 2, share)
+                share = np.where(is_poor, share / 2, share)
             y = new
 
             # the next step makes up what is still lacking: for a linear equation only rounding
             left = np.where(now > 0, size * after / now, 0.0)
-            small = (
-                (size <= 1e-6 * near)
-                | (left <= 1e-5 * near)
-                | ((size <= near) & (size >= previous / 4))
-            )
-            good |= going & (share == 1) & small
-            going &= ~good & (share > 1e-6)
+            is_tiny = (size <= 1e-6 * near) | (left <= 1e-5 * near)
+            stays_small = (size <= near) & (size >= previous / 4)
+            is_settled |= is_running & (share == 1) & (is_tiny | stays_small)
+            is_running &= ~is_settled & (share > 1e-6)
             previous = np.where(share == 1, size, np.inf)
-        return y, good
+        return y, is_settled
+
+    def _size_of_lack(self, lacking: tuple[Array, Array, Array]) -> Array:
+        """Return the root of the sum of the squares of what the equations of every machine lack, (machines,)."""
+        jump, lack, _ = lacking
+        squares = np.square(jump).sum(axis=0) + np.square(lack).sum(axis=(0, 1))
+        return np.sqrt(np.bincount(self.pieces.machine, squares, minlength=self.pieces.count))
+
+    def _newton_step(self, y: Array, lacking: tuple[Array, Array, Array]) -> Array:
+        """Return Newton's step of y, (m, k + 1, pieces)."""
+        jump, lack, stiffness = lacking
+        # in a piece step = response + gain · step at its start; its last node starts the next piece
+        response, gain = self.inside(lack, stiffness)
+        more = self.padded(response[-1] + jump[:, self.after].T, np.zeros(len(y)))
+        gains = self.padded(gain[-1], np.eye(len(y)))
+        start = around_the_cycle(gains, more)[self._row, self._number]
+        nodes = response + (gain @ start[:, :, None])[..., 0]
+        return np.concatenate((start[None], nodes)).transpose(2, 0, 1)
 
 
 def around_the_cycle(gain: Array, more: Array) -> Array:
@@ -379,20 +418,22 @@ def around_the_cycle(gain: Array, more: Array) -> Array:
     A single unknown that grows along the cycle is followed backward, where it decays. What the equations leave open is
     taken as small as can be. Of what is not finite it is not a number.
     """
-    finite = np.asarray(np.isfinite(gain).all(axis=(1, 2, 3)) & np.isfinite(more).all(axis=(1, 2)))[
-        :, None, None
-    ]
-    gain, more = np.where(finite[..., None], gain, 0.0), np.where(finite, more, 0.0)
+    has_finite_gain = np.isfinite(gain).all(axis=(1, 2, 3))
+    has_finite_more = np.isfinite(more).all(axis=(1, 2))
+    is_finite = np.asarray(has_finite_gain & has_finite_more)[:, None, None]
+    gain = np.where(is_finite[..., None], gain, 0.0)
+    more = np.where(is_finite, more, 0.0)
+    # backward: x_i = (x_{i+1} − more_i)/gain_i
     grows = np.zeros(())
     if more.shape[2] == 1:
-        grows = (np.log(np.maximum(np.abs(gain), 1e-300)).sum(axis=(1, 2, 3)) > 0)[:, None, None]
-        back = 1 / np.where(grows[..., None], gain[:, ::-1], 1.0)
-        gain, more = (
-            np.where(grows[..., None], back, gain),
-            np.where(grows, -more[:, ::-1] * back[..., 0], more),
-        )
-    found = _paired(gain, more)
-    return np.where(finite, np.where(grows, np.roll(found[:, ::-1], 1, axis=1), found), np.nan)
+        logarithms = np.log(np.maximum(np.abs(gain), 1e-300))
+        grows = (logarithms.sum(axis=(1, 2, 3)) > 0)[:, None, None]
+        inverse = 1 / np.where(grows[..., None], gain[:, ::-1], 1.0)
+        gain = np.where(grows[..., None], inverse, gain)
+        more = np.where(grows, -more[:, ::-1] * inverse[..., 0], more)
+    forward = _paired(gain, more)
+    backward = np.roll(forward[:, ::-1], 1, axis=1)
+    return np.where(is_finite, np.where(grows, backward, forward), np.nan)
 
 
 def _paired(gain: Array, more: Array) -> Array:
@@ -403,11 +444,13 @@ def _paired(gain: Array, more: Array) -> Array:
         return (closed @ more[:, 0, :, None])[:, None, :, 0]
     if count % 2:  # a piece on which nothing changes
         unit = np.broadcast_to(np.eye(size), gain[:, :1].shape)
-        gain, more = (
-            np.concatenate((gain, unit), axis=1),
-            np.concatenate((more, 0 * more[:, :1]), axis=1),
-        )
-    (first, second), (early, late) = (gain[:, ::2], gain[:, 1::2]), (more[:, ::2], more[:, 1::2])
-    starts = _paired(second @ first, (second @ early[..., None])[..., 0] + late)
-    middles = (first @ starts[..., None])[..., 0] + early
+        gain = np.concatenate((gain, unit), axis=1)
+        more = np.concatenate((more, 0 * more[:, :1]), axis=1)
+    first_gain = gain[:, ::2]
+    second_gain = gain[:, 1::2]
+    first_more = more[:, ::2]
+    second_more = more[:, 1::2]
+    pair_more = (second_gain @ first_more[..., None])[..., 0] + second_more
+    starts = _paired(second_gain @ first_gain, pair_more)
+    middles = (first_gain @ starts[..., None])[..., 0] + first_more
     return np.stack((starts, middles), axis=2).reshape(more.shape)[:, :count]

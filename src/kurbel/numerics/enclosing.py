@@ -45,8 +45,9 @@ class Enclosing(NamedTuple):
 @lru_cache
 def _choices(count: int) -> Indices:
     """Return which points may carry a circle round so many: one, as (i, i, i), two, as (i, j, j), or three."""
-    few = [(i, j, j) for i, j in combinations_with_replacement(range(count), 2)]
-    return np.array([*few, *combinations(range(count), 3)], dtype=np.intp).T
+    up_to_two = [(i, j, j) for i, j in combinations_with_replacement(range(count), 2)]
+    three = combinations(range(count), 3)
+    return np.array([*up_to_two, *three], dtype=np.intp).T
 
 
 def smallest_circle(points: ComplexArray, more: Number = 0.0) -> Enclosing:
@@ -58,24 +59,36 @@ def smallest_circle(points: ComplexArray, more: Number = 0.0) -> Enclosing:
     >>> smallest_circle(np.array([[0j], [2 + 0j], [1 + 0.5j]]))[:2]
     (array([1.+0.j]), array([1.]))
     """
-    choices, more = _choices(len(points)), np.broadcast_to(more, points.shape)
-    (a, b, c), (more_a, more_b, more_c) = points[choices], more[choices]
-    u, v = b - a, c - a
-    p, q = np.abs(u) ** 2 + (more_b - more_a), np.abs(v) ** 2 + (more_c - more_a)
-    two = (choices[1] == choices[2])[:, None]
+    choices = _choices(len(points))
+    more = np.broadcast_to(more, points.shape)
+    a, b, c = points[choices]
+    more_a, more_b, more_c = more[choices]
+    u = b - a
+    v = c - a
+    p = np.abs(u) ** 2 + (more_b - more_a)
+    q = np.abs(v) ** 2 + (more_c - more_a)
+
+    # centre and shares of the circle that each choice carries
+    is_pair = (choices[1] == choices[2])[:, None]
     with np.errstate(all="ignore"):
         area = (u.conj() * v).imag
         along = p / np.where(u == 0, np.inf, 2 * np.abs(u) ** 2)
-        w = np.where(two, along * u, (p * v - q * u) / (2j * area))
-        of_b = np.where(two, along, (w.conj() * v).imag / area)
-        of_c = np.where(two, 0.0, (u.conj() * w).imag / area)
-        square = (np.abs(points[:, None] - (a + w)) ** 2 + more[:, None]).max(axis=0)
-        carried = np.minimum(1 - of_b - of_c, np.minimum(of_b, of_c)) >= -_AS_ONE
-    best, each = np.where(carried, square, np.inf).argmin(axis=0), np.arange(points.shape[1])
-    of_b, of_c = of_b[best, each], of_c[best, each]
-    owners = choices[:, None, best] == np.arange(len(points))[:, None]
-    shares = (owners * np.array([1 - of_b - of_c, of_b, of_c])[:, None]).sum(axis=0)
-    return Enclosing((a + w)[best, each], square[best, each], shares)
+        w = np.where(is_pair, along * u, (p * v - q * u) / (2j * area))
+        share_b = np.where(is_pair, along, (w.conj() * v).imag / area)
+        share_c = np.where(is_pair, 0.0, (u.conj() * w).imag / area)
+        centre = a + w
+        square = (np.abs(points[:, None] - centre) ** 2 + more[:, None]).max(axis=0)
+        share_a = 1 - share_b - share_c
+        is_between = np.minimum(share_a, np.minimum(share_b, share_c)) >= -_AS_ONE
+
+    # the smallest of those whose centre is between the points that carry it
+    choice = np.where(is_between, square, np.inf).argmin(axis=0)
+    column = np.arange(points.shape[1])
+    best = choice, column
+    is_owner = choices[:, None, choice] == np.arange(len(points))[:, None]
+    best_shares = np.array([share_a[best], share_b[best], share_c[best]])
+    shares = (is_owner * best_shares[:, None]).sum(axis=0)
+    return Enclosing(centre[best], square[best], shares)
 
 
 class ClosedCurve:
@@ -105,12 +118,11 @@ class ClosedCurve:
         self, degrees: Array, machine: Indices | int = 0
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """Return the points at angles (…) in degrees, and their first and second derivatives by φ in radians."""
-        present, own = self._present
-        numbers = own.reshape(-1, *(1 for _ in degrees.shape))
-        waves = present[:, np.broadcast_to(machine, degrees.shape)] * np.exp(
-            1j * np.radians(numbers * degrees)
-        )
-        weights = np.stack((np.ones(len(waves)), 1j * own, -(own**2)))
+        present_waves, n = self._present
+        numbers = n.reshape(-1, *(1 for _ in degrees.shape))
+        amplitudes = present_waves[:, np.broadcast_to(machine, degrees.shape)]
+        waves = amplitudes * np.exp(1j * np.radians(numbers * degrees))
+        weights = np.stack((np.ones(len(waves)), 1j * n, -(n**2)))
         point, slope, bend = np.tensordot(weights, waves, 1)
         return point, slope, bend
 
@@ -130,73 +142,79 @@ class ClosedCurve:
 
     def farthest(self) -> tuple[Array, Array]:
         """Return the largest distances from 0, and the first angles in degrees that have them, each (machines,)."""
-        step, sizes = 360.0 / len(self.samples), np.abs(self.samples)
-        best = sizes.max(axis=0)
-        top = (
-            (sizes >= np.roll(sizes, 1, axis=0))
-            & (sizes >= np.roll(sizes, -1, axis=0))
-            & (sizes >= _HIGH * best)
-        )
-        level = ~(best - sizes.min(axis=0) > _ROUNDING * best)  # of a circle every angle is as far
-        top[:, level] = np.arange(len(sizes))[:, None] == 0
-        machine, place = np.nonzero(top.T)
-        sample = place.astype(float) * step
+        # high samples no lower than their neighbours; of a circle every angle is as far, and the first one counts
+        distances = np.abs(self.samples)
+        highest = distances.max(axis=0)
+        is_peak = distances >= np.roll(distances, 1, axis=0)
+        is_peak &= distances >= np.roll(distances, -1, axis=0)
+        is_peak &= distances >= _HIGH * highest
+        is_circle = ~(highest - distances.min(axis=0) > _ROUNDING * highest)
+        is_peak[:, is_circle] = np.arange(len(distances))[:, None] == 0
+        machine, number = np.nonzero(is_peak.T)
+
+        # Newton's method to the summit next to each sample: d|c|²/dφ = 0
+        step = 360.0 / len(self.samples)
+        sample = number.astype(float) * step
         degrees = sample
         for _ in range(_STEPS):
             point, slope, bend = self.at(degrees, machine)
-            speed, turn = np.abs(slope) ** 2, (point.conj() * bend).real
-            summit = speed + turn < -_SETTLED * (speed + np.abs(turn))
-            moved = (point.conj() * slope).real / np.where(summit, -speed - turn, np.inf)
-            degrees = np.clip(degrees + np.degrees(moved), sample - step, sample + step)
-        degrees = np.mod(np.where(np.abs(degrees - sample) < 1e-9, sample, degrees), 360.0)
-        lengths, first = (
-            np.abs(self.at(degrees, machine)[0]),
-            np.searchsorted(machine, np.arange(len(best))),
-        )
+            speed = np.abs(slope) ** 2
+            turn = (point.conj() * bend).real
+            is_summit = speed + turn < -_SETTLED * (speed + np.abs(turn))
+            shift = (point.conj() * slope).real / np.where(is_summit, -speed - turn, np.inf)
+            degrees = np.clip(degrees + np.degrees(shift), sample - step, sample + step)
+        is_sample = np.abs(degrees - sample) < 1e-9
+        degrees = np.mod(np.where(is_sample, sample, degrees), 360.0)
+
+        # the first of the summits that are as far but for rounding
+        lengths = np.abs(self.at(degrees, machine)[0])
+        first = np.searchsorted(machine, np.arange(len(highest)))
         largest = np.maximum.reduceat(lengths, first)
-        reached = ~(lengths < (1 - _EQUAL) * largest[machine])
-        return largest, np.minimum.reduceat(np.where(reached, degrees, np.inf), first)
+        is_farthest = ~(lengths < (1 - _EQUAL) * largest[machine])
+        return largest, np.minimum.reduceat(np.where(is_farthest, degrees, np.inf), first)
 
     def least_circle(self) -> tuple[ComplexArray, Array, Array]:
         """Return centre and radius of the smallest circle round it, and the first angle in degrees that touches it.
 
         Each (machines,). A curve without even waves is its own image about 0, its centre.
         """
-        even = ~(self.waves[self.numbers % 2 == 0] != 0).any(axis=0)
+        is_even = self.numbers % 2 == 0
+        is_centred = ~(self.waves[is_even] != 0).any(axis=0)
         size = np.abs(self.samples).max(axis=0)
-        degrees = np.zeros((4, len(size))) if even.all() else self._nearly_enclosed()
+        machine = np.arange(len(size))
+        degrees = np.zeros((4, len(size))) if is_centred.all() else self._nearly_enclosed()
         for _ in range(_ROUNDS):
+            # the circle round four points of the curve, and how far the curve reaches beyond it
             circle, degrees = self._enclosed(degrees)
-            centre = np.where(
-                even | (np.abs(circle.centre) <= _ROUNDING * size), 0.0, circle.centre
-            )
-            radius, at = self.plus(0, -centre).farthest()
-            beyond = ~even & (radius > np.sqrt(circle.square) * (1 + _SETTLED) + _ROUNDING * size)
-            if not beyond.any():
+            is_at_origin = is_centred | (np.abs(circle.centre) <= _ROUNDING * size)
+            centre = np.where(is_at_origin, 0.0, circle.centre)
+            radius, farthest = self.plus(0, -centre).farthest()
+            least = np.sqrt(circle.square) * (1 + _SETTLED) + _ROUNDING * size
+            reaches_beyond = ~is_centred & (radius > least)
+            if not reaches_beyond.any():
                 break
-            degrees[circle.shares.argmin(axis=0), np.arange(len(size))] = at
-        return centre, radius, at
+            # the farthest point takes the place of the one that carries the circle least
+            degrees[circle.shares.argmin(axis=0), machine] = farthest
+        return centre, radius, farthest
 
     def _nearly_enclosed(self) -> Array:
         """Return the angles (4, n) in degrees of samples, of which two or three nearly carry the circle round all.
 
         A circle round four samples grows as the farthest sample takes the place of one that does not carry it.
         """
-        samples, each = self.samples, np.arange(self.samples.shape[1])
-        rows = np.array(
-            [
-                measure.argmax(axis=0)
-                for side in (samples, -samples)
-                for measure in (side.real, side.imag)
-            ]
-        )
+        # the samples farthest to the right, above, to the left and below
+        samples = self.samples
+        machine = np.arange(samples.shape[1])
+        directions = (samples.real, samples.imag, -samples.real, -samples.imag)
+        rows = np.array([distance.argmax(axis=0) for distance in directions])
         for _ in range(_ROUNDS):
-            circle = smallest_circle(samples[rows, each])
-            distance = np.abs(samples - circle.centre) ** 2
-            far = distance.argmax(axis=0)
-            if not (distance[far, each] > circle.square * (1 + _NEAR)).any():
+            circle = smallest_circle(samples[rows, machine])
+            square = np.abs(samples - circle.centre) ** 2
+            farthest = square.argmax(axis=0)
+            reaches_beyond = square[farthest, machine] > circle.square * (1 + _NEAR)
+            if not reaches_beyond.any():
                 break
-            rows[circle.shares.argmin(axis=0), each] = far
+            rows[circle.shares.argmin(axis=0), machine] = farthest
         return rows * (360.0 / len(samples))
 
     def _enclosed(self, degrees: Array) -> tuple[Enclosing, Array]:
@@ -212,30 +230,44 @@ class ClosedCurve:
         """
         machine = np.arange(degrees.shape[1])
         circle = smallest_circle(self.at(degrees, machine)[0])
-        centre, shares, radius = circle.centre, circle.shares, np.sqrt(circle.square.max()) or 1.0
+        centre = circle.centre
+        shares = circle.shares
+        radius = np.sqrt(circle.square.max()) or 1.0
         for _ in range(_ROUNDS):
+            # 1/τ; 0 where the curve is a circle about the centre
             point, slope, bend = self.at(degrees, machine)
             arm = point - centre
-            touching, speed, turn = (
-                (arm.conj() * slope).real,
-                np.abs(slope) ** 2,
-                (arm.conj() * bend).real,
-            )
-            summit = speed + turn < -_FLAT * (speed + np.abs(turn))
-            yielding = np.where(summit, 1 / np.where(summit, speed + turn, 1.0), 0.0)  # 1/τ
-            step = -touching * yielding
-            twice_h, lean = np.abs(arm) ** 2 + touching * step, -(arm + slope * step)
-            x, y, weight = slope.real, slope.imag, shares * yielding
+            arm_slope = (arm.conj() * slope).real  # d·c′
+            speed = np.abs(slope) ** 2
+            turn = (arm.conj() * bend).real
+            is_summit = speed + turn < -_FLAT * (speed + np.abs(turn))
+            inverse_tau = np.where(is_summit, 1 / np.where(is_summit, speed + turn, 1.0), 0.0)
+
+            # dφ of a centre that stays, 2h and h′
+            step = -arm_slope * inverse_tau
+            twice_h = np.abs(arm) ** 2 + arm_slope * step
+            h_slope = -(arm + slope * step)
+
+            # L of the mean h″
+            x = slope.real
+            y = slope.imag
+            weight = shares * inverse_tau
             l_xx = np.sqrt(1 - (weight * x * x).sum(axis=0))
             l_xy = -(weight * x * y).sum(axis=0) / l_xx
             l_yy = np.sqrt(1 - (weight * y * y).sum(axis=0) - l_xy**2)
-            scaled = lean.real / l_xx + 1j * (lean.imag - l_xy * lean.real / l_xx) / l_yy
+
+            # the smallest circle round L⁻¹h′, and from its centre the shift of the centre
+            scaled_x = h_slope.real / l_xx
+            scaled = scaled_x + 1j * (h_slope.imag - l_xy * h_slope.real / l_xx) / l_yy
             circle = smallest_circle(scaled, twice_h - np.abs(scaled) ** 2)
             up = -circle.centre.imag / l_yy
-            moved = (-circle.centre.real - l_xy * up) / l_xx + 1j * up
-            centre, shares = centre + moved, circle.shares
-            step = np.clip(step + (slope.conj() * moved).real * yielding, -0.2, 0.2)
+            shift = (-circle.centre.real - l_xy * up) / l_xx + 1j * up
+            centre = centre + shift
+            shares = circle.shares
+
+            # the points follow the centre
+            step = np.clip(step + (slope.conj() * shift).real * inverse_tau, -0.2, 0.2)
             degrees = np.mod(degrees + np.degrees(step), 360.0)
-            if max(np.abs(step).max(), np.abs(moved).max() / radius) < _CLOSE:
+            if max(np.abs(step).max(), np.abs(shift).max() / radius) < _CLOSE:
                 break
         return Enclosing(centre, circle.square, shares), degrees

@@ -28,7 +28,9 @@ def number_of(answer: object) -> Any:
 def size_of(answer: object) -> float:
     """Return the magnitude of a key value; of a list the largest; 0 for None."""
     number = number_of(answer)
-    return max(map(abs, number), default=0.0) if isinstance(number, tuple) else abs(number or 0.0)
+    if isinstance(number, tuple):
+        return max(map(abs, number), default=0.0)
+    return abs(number or 0.0)
 
 
 def largest(first: Extreme, *others: Extreme) -> Extreme:
@@ -47,9 +49,9 @@ def smallest(first: Extreme, *others: Extreme) -> Extreme:
 
 def chosen(condition: Truth, extreme: Extreme, otherwise: Extreme) -> Extreme:
     """Return the extreme where the condition holds, else the other one."""
-    return Extreme(
-        *(where(condition, one, other) for one, other in zip(extreme, otherwise, strict=True))
-    )
+    value = where(condition, extreme.value, otherwise.value)
+    degrees = where(condition, extreme.degrees, otherwise.degrees)
+    return Extreme(value, degrees)
 
 
 _ALIKE = 1e-13
@@ -65,8 +67,8 @@ class Extremes(NamedTuple):
     @property
     def peak(self) -> Extreme:
         """The largest magnitude, of either sign; of two that differ only by rounding the first."""
-        high, low = self.largest, Extreme(-self.smallest.value, self.smallest.degrees)
-        alike = abs(low.value - high.value) <= _ALIKE * abs(high.value)
-        return chosen(
-            np.where(alike, low.degrees < high.degrees, low.value > high.value), low, high
-        )
+        high = self.largest
+        low = Extreme(-self.smallest.value, self.smallest.degrees)
+        is_equal = abs(low.value - high.value) <= _ALIKE * abs(high.value)
+        is_low = np.where(is_equal, low.degrees < high.degrees, low.value > high.value)
+        return chosen(is_low, low, high)

@@ -13,9 +13,9 @@ class LobattoRule:
     """Lobatto nodes in [−1, 1], both ends included, and matrices that act on the values of a polynomial there.
 
     weights (n,): of its integral; series (n, n): turns values into Chebyshev coefficients; slope: those into the
-    coefficients of the derivative, (n − 1, n); area (n, n): values into integrals from −1 to every node; places (m,):
-    where a scan for changes of sign looks; scan, scan_slope (m, n): values into values and slopes there; halving (2n,
-    n): into values at the nodes of both halves.
+    coefficients of the derivative, (n − 1, n); area (n, n): values into integrals from −1 to every node; scan_positions
+    (m,): where a scan for changes of sign looks; scan, scan_slope (m, n): values into values and slopes there; halving
+    (2n, n): into values at the nodes of both halves.
     """
 
     def __init__(self, count: int) -> None:
@@ -29,31 +29,33 @@ class LobattoRule:
         self.series = np.linalg.inv(chebyshev(self.nodes, count))
         self.slope = slope_of_series(count)
         self.area = chebyshev(self.nodes, count + 1) @ integral_of_series(count) @ self.series
-        self.halving = (
-            chebyshev(np.concatenate((self.nodes - 1, self.nodes + 1)) / 2, count) @ self.series
-        )
-        self.places = np.sin(np.pi / 2 * np.linspace(-1, 1, 2 * count + 1))
-        self.scan = chebyshev(self.places, count) @ self.series
-        self.scan_slope = chebyshev(self.places, count - 1) @ self.slope @ self.series
+        of_halves = np.concatenate((self.nodes - 1, self.nodes + 1)) / 2
+        self.halving = chebyshev(of_halves, count) @ self.series
+        self.scan_positions = np.sin(np.pi / 2 * np.linspace(-1, 1, 2 * count + 1))
+        self.scan = chebyshev(self.scan_positions, count) @ self.series
+        self.scan_slope = chebyshev(self.scan_positions, count - 1) @ self.slope @ self.series
 
 
 rule = lru_cache(LobattoRule)
 """The rule of so many nodes; it integrates polynomials of degree 2n − 3 exactly."""
 
 
-def chebyshev(places: Array, count: int) -> Array:
-    """Return the first Chebyshev polynomials T_0, T_1, … at places (n,) in [−1, 1], (n, count)."""
-    return np.asarray(series_of.chebvander(places, count - 1), dtype=float)
+def chebyshev(positions: Array, count: int) -> Array:
+    """Return the first Chebyshev polynomials T_0, T_1, … at positions (n,) in [−1, 1], (n, count)."""
+    return np.asarray(series_of.chebvander(positions, count - 1), dtype=float)
 
 
-def series_at(series: Array, places: Array) -> Array:
-    """Return Σ c_k T_k(t) by Clenshaw's recurrence; series (k, …), places (…,)."""
-    ahead, last, twice = np.zeros_like(places), np.zeros_like(places), 2 * places
-    for coefficient in series[:0:-1]:  # c + 2 t b₁ − b₂, without new arrays
-        np.subtract(coefficient, last, out=last)
-        last += twice * ahead
-        ahead, last = last, ahead
-    return series[0] + places * ahead - last
+def series_at(series: Array, positions: Array) -> Array:
+    """Return Σ c_k T_k(t) by Clenshaw's recurrence; series (k, …), positions t (…,) in [−1, 1]."""
+    b1 = np.zeros_like(positions)
+    b2 = np.zeros_like(positions)
+    twice = 2 * positions
+    for coefficient in series[:0:-1]:
+        # c + 2 t b₁ − b₂, written over b₂ without new arrays
+        np.subtract(coefficient, b2, out=b2)
+        b2 += twice * b1
+        b1, b2 = b2, b1
+    return series[0] + positions * b1 - b2
 
 
 @lru_cache

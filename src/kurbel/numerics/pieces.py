@@ -67,13 +67,11 @@ class Angles(NamedTuple):
 
     def listed(self, count: int | None) -> tuple[object, ...]:
         """Return them as a tuple; of many machines one tuple each."""
+        degrees = self.degrees.tolist()
         if count is None:
-            return tuple(self.degrees.tolist())
-        known, ends = (
-            self.degrees.tolist(),
-            np.searchsorted(self.machine, np.arange(count + 1)).tolist(),
-        )
-        return tuple(tuple(known[low:high]) for low, high in pairwise(ends))
+            return tuple(degrees)
+        ends = np.searchsorted(self.machine, np.arange(count + 1)).tolist()
+        return tuple(tuple(degrees[low:high]) for low, high in pairwise(ends))
 
 
 NOWHERE = Angles(np.zeros(0, dtype=np.intp), np.zeros(0))
@@ -89,10 +87,9 @@ class SampledExtremes(NamedTuple):
 
     def each(self, result: Callable[[Array], Any]) -> list[Extremes]:
         """Return those of every quantity; result: gives numbers (machines,) the form in which they are shown."""
-        high, high_at, low, low_at = (map(result, part) for part in self)
-        return [
-            Extremes(*pair) for pair in zip(map(Extreme, high, high_at), map(Extreme, low, low_at))
-        ]
+        highest = map(Extreme, map(result, self.largest), map(result, self.largest_at))
+        lowest = map(Extreme, map(result, self.smallest), map(result, self.smallest_at))
+        return list(map(Extremes, highest, lowest))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,36 +112,40 @@ class Pieces:
     @classmethod
     def between(cls, breaks: Angles, count: int, cycle: float, nodes: int = 16) -> Pieces:
         """Return the pieces between these angles, taken modulo the cycle, and all right angles; no wider than 45°."""
+        # the breaks of every machine and all multiples of 45°, in order
         eighths = np.arange(0.0, cycle + 1, 45.0)
         machine = np.append(np.repeat(np.arange(count), len(eighths)), breaks.machine)
         degrees = np.append(np.tile(eighths, count), np.mod(breaks.degrees, cycle))
-        between = np.append(
-            np.tile(eighths % 90 == 45, count), np.zeros(len(breaks.degrees), dtype=bool)
-        )
+        is_between_right_angles = np.tile(eighths % 90 == 45, count)
+        is_spare = np.append(is_between_right_angles, np.zeros(len(breaks.degrees), dtype=bool))
         order = np.lexsort((degrees, machine))
-        machine, degrees, spare = machine[order], degrees[order], between[order]
-        # between the right angles only where a piece would be too wide
-        spare[1:-1] &= degrees[2:] - degrees[:-2] <= 45.0
-        machine, degrees = machine[~spare], degrees[~spare]
-        width = np.append(np.diff(degrees), 0.0)
-        kept = np.flatnonzero(width > _NO_WIDTH)
-        right_angle = 90.0 * np.rint((degrees[kept] + width[kept] / 2) / 90.0)
-        return cls(
-            right_angle,
-            degrees[kept] - right_angle,
-            width[kept] / 2,
-            machine[kept],
-            count,
-            cycle,
-            rule(nodes),
-        )
+        machine = machine[order]
+        degrees = degrees[order]
+        is_spare = is_spare[order]
 
-    def split(self, at: Angles) -> Pieces:
+        # between the right angles a cut stays only where a piece would be too wide
+        is_spare[1:-1] &= degrees[2:] - degrees[:-2] <= 45.0
+        machine = machine[~is_spare]
+        degrees = degrees[~is_spare]
+
+        # from angle to angle; a piece without width is dropped
+        widths = np.append(np.diff(degrees), 0.0)
+        starts = np.flatnonzero(widths > _NO_WIDTH)
+        low = degrees[starts]
+        half = widths[starts] / 2
+        right_angle = 90.0 * np.rint((low + half) / 90.0)
+        offset = low - right_angle
+        return cls(right_angle, offset, half, machine[starts], count, cycle, rule(nodes))
+
+    def split(self, cuts: Angles) -> Pieces:
         """Return these pieces cut at more angles."""
-        if not len(at.degrees):
+        if not len(cuts.degrees):
             return self
-        breaks = Angles(np.append(self.machine, at.machine), np.append(self.low, at.degrees))
-        return Pieces.between(breaks, self.count, self.cycle, len(self.rule.nodes))
+        machine = np.append(self.machine, cuts.machine)
+        degrees = np.append(self.low, cuts.degrees)
+        return Pieces.between(
+            Angles(machine, degrees), self.count, self.cycle, len(self.rule.nodes)
+        )
 
     def taken(self, rows: Indices | Flags) -> Pieces:
         """Return these of the pieces; they then no longer fill the cycle."""
@@ -158,28 +159,25 @@ class Pieces:
 
     def halved(self, rows: Indices | Flags) -> Pieces:
         """Return the halves of these pieces, in order."""
-        some = self.taken(rows)
-        return some.parted(np.full(len(some.half), 2))
+        pieces = self.taken(rows)
+        return pieces.parted(np.full(len(pieces.half), 2))
 
-    def by_crank(self, later: Number) -> Pieces:
+    def by_crank(self, lag: Number) -> Pieces:
         """Return these pieces by the angles of a crank that lags by so many degrees, a number or (machines,)."""
-        behind = self.of(later)
-        right_angle = 90.0 * np.rint((self.middle - behind) / 90.0)
+        piece_lag = self.of(lag)
+        right_angle = 90.0 * np.rint((self.middle - piece_lag) / 90.0)
         # differences of right angles are exact
-        return replace(
-            self,
-            right_angle=right_angle,
-            offset=(self.right_angle - right_angle - behind) + self.offset,
-        )
+        shift = self.right_angle - right_angle - piece_lag
+        return replace(self, right_angle=right_angle, offset=shift + self.offset)
 
-    def parted(self, parts: Indices) -> Pieces:
+    def parted(self, counts: Indices) -> Pieces:
         """Return every piece cut into so many equal parts, (pieces,), in order."""
-        row = np.repeat(np.arange(len(parts)), parts)
-        number = np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)
-        cut = self.taken(row)
-        return replace(
-            cut, offset=cut.offset + 2 * cut.half * number / parts[row], half=cut.half / parts[row]
-        )
+        piece = np.repeat(np.arange(len(counts)), counts)
+        first_part = np.repeat(np.cumsum(counts) - counts, counts)
+        number = np.arange(len(piece)) - first_part
+        parts = self.taken(piece)
+        offset = parts.offset + 2 * parts.half * number / counts[piece]
+        return replace(parts, offset=offset, half=parts.half / counts[piece])
 
     # positions
 
@@ -218,9 +216,11 @@ class Pieces:
     @cached_property
     def high(self) -> Array:
         """The angles in degrees at which they end, the last of a machine with the cycle."""
-        own, following = self.low + 2 * self.half, self.low[self.after]
-        following = np.where(self.after == self.first[self.machine], self.cycle, following)
-        return np.where(np.abs(following - own) < _SAME, following, own)
+        end = self.low + 2 * self.half
+        is_last = self.after == self.first[self.machine]
+        next_low = np.where(is_last, self.cycle, self.low[self.after])
+        meets_next = np.abs(next_low - end) < _SAME
+        return np.where(meets_next, next_low, end)
 
     @property
     def ends(self) -> Array:
@@ -237,35 +237,31 @@ class Pieces:
 
     def holding(self, machine: Indices, degrees: Array) -> Indices:
         """Return the pieces (n,) that hold angles (n,) in degrees of these machines, or begin there."""
-        keys = self.machine * (2 * self.cycle) + self.low
-        found = (
-            np.searchsorted(
-                keys, machine * (2 * self.cycle) + np.mod(degrees, self.cycle), side="right"
-            )
-            - 1
-        )
-        return np.maximum(found, self.first[machine])
+        # the cycles of the machines one behind the other, with a gap between them
+        stride = 2 * self.cycle
+        starts = self.machine * stride + self.low
+        angles = machine * stride + np.mod(degrees, self.cycle)
+        piece = np.searchsorted(starts, angles, side="right") - 1
+        return np.maximum(piece, self.first[machine])
 
     def kept_of(self, others: Pieces) -> tuple[Indices, Indices]:
         """Return which of other pieces are among these as they are, and which of these are new."""
-        row = others.holding(self.machine, self.middle)
-        same = (others.offset[row] == self.offset) & (others.half[row] == self.half)
-        same &= others.right_angle[row] == self.right_angle
-        return row[same], np.flatnonzero(~same)
+        piece = others.holding(self.machine, self.middle)
+        is_same = (others.offset[piece] == self.offset) & (others.half[piece] == self.half)
+        is_same &= others.right_angle[piece] == self.right_angle
+        return piece[is_same], np.flatnonzero(~is_same)
 
     # integrals, zeros and extremes of samples (nodes, pieces)
 
     def largest(self, values: Array) -> Array:
         """Return the largest magnitude (…, machines) of samples (…, nodes, pieces)."""
-        return np.maximum.reduceat(
-            np.maximum(values.max(axis=-2), -values.min(axis=-2)), self.first, axis=-1
-        )
+        magnitudes = np.maximum(values.max(axis=-2), -values.min(axis=-2))
+        return np.maximum.reduceat(magnitudes, self.first, axis=-1)
 
     def integral(self, values: Array) -> Array:
         """Return ∫ value dφ (φ in radians) over the cycle, (…, machines)."""
-        return np.add.reduceat(
-            np.radians(self.half) * (self.rule.weights @ values), self.first, axis=-1
-        )
+        areas = np.radians(self.half) * (self.rule.weights @ values)
+        return np.add.reduceat(areas, self.first, axis=-1)
 
     def mean(self, values: Array) -> Array:
         """Return the means over the cycle, (…, machines)."""
@@ -273,47 +269,49 @@ class Pieces:
 
     def running(self, values: Array) -> Array:
         """Return ∫ value dφ (φ in radians) from the angle 0 to every node, (nodes, pieces)."""
+        # from the start of each piece
         inside = (self.rule.area @ values) * np.radians(self.half)
+        # before each piece: the sum over all machines, with what its rounding loses
         after = np.cumsum(inside[-1])
         before = np.append(0.0, after[:-1])
         before[1:] += np.cumsum(lost(before, inside[-1], after))[:-1]
+        # less that of the machines before
         return inside + (before - before[self.first][self.machine])
 
-    def carried(self, values: Array, source: Pieces, later: Number = 0.0) -> Array:
+    def carried(self, values: Array, source: Pieces, lag: Number = 0.0) -> Array:
         """Return samples (…, nodes, pieces) of other pieces, within which these lie, at the nodes of these.
 
-        later: degrees by which the other pieces lag these, a number or (machines,).
+        lag: degrees by which the other pieces lag these, a number or (machines,).
         """
-        if source is self and not np.any(later):
+        if source is self and not np.any(lag):
             return values
-        behind = self.of(later)
-        row = source.holding(self.machine, self.middle - behind)
+        # the piece of the source that holds each of these, and how far from its beginning this begins
+        piece_lag = self.of(lag)
+        piece = source.holding(self.machine, self.middle - piece_lag)
+        source_half = source.half[piece]
         # differences of right angles are exact
-        from_low = (self.right_angle - source.right_angle[row] - behind) + (
-            self.offset - source.offset[row]
-        )
-        from_low = from_low - source.cycle * np.rint(
-            (from_low + self.half - source.half[row]) / source.cycle
-        )
-        width = source.half[row]
-        whole = (
-            (np.abs(from_low) < _NO_WIDTH)
-            & (np.abs(self.half - width) < _NO_WIDTH)
-            & (self.rule is source.rule)
-        )
-        found = np.empty((*values.shape[:-2], *self.degrees.shape))
-        if whole.any():
-            found[..., whole] = values[..., row[whole]]
-        for part in np.split(
-            np.flatnonzero(~whole), range(_AT_ONCE, np.count_nonzero(~whole), _AT_ONCE)
-        ):
-            series = np.moveaxis(source.rule.series @ values[..., row[part]], -2, 0)[..., None, :]
-            places = (from_low[part] + self.half[part] * (1 + self.rule.nodes[:, None])) / width[
-                part
-            ] - 1
-            own = np.broadcast_to(np.clip(places, -1, 1), (*values.shape[:-2], *places.shape))
-            found[..., part] = series_at(series, own)
-        return found
+        shift = self.right_angle - source.right_angle[piece] - piece_lag
+        from_low = shift + (self.offset - source.offset[piece])
+        turns = np.rint((from_low + self.half - source_half) / source.cycle)
+        from_low = from_low - source.cycle * turns
+
+        # a piece that the source has as it is keeps its samples
+        samples = np.empty((*values.shape[:-2], *self.degrees.shape))
+        is_same = (np.abs(from_low) < _NO_WIDTH) & (np.abs(self.half - source_half) < _NO_WIDTH)
+        is_same &= self.rule is source.rule
+        if is_same.any():
+            samples[..., is_same] = values[..., piece[is_same]]
+
+        # on the others the polynomials of the source are summed
+        others = np.flatnonzero(~is_same)
+        for chunk in np.split(others, range(_AT_ONCE, len(others), _AT_ONCE)):
+            series = source.rule.series @ values[..., piece[chunk]]
+            coefficients = np.moveaxis(series, -2, 0)[..., None, :]
+            node_from_low = from_low[chunk] + self.half[chunk] * (1 + self.rule.nodes[:, None])
+            positions = np.clip(node_from_low / source_half[chunk] - 1, -1, 1)
+            positions = np.broadcast_to(positions, (*values.shape[:-2], *positions.shape))
+            samples[..., chunk] = series_at(coefficients, positions)
+        return samples
 
     def at(
         self, values: Array, machine: Indices, degrees: Array, within: Array | None = None
@@ -322,45 +320,57 @@ class Pieces:
 
         At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
         """
+        # the piece on the side that is meant
         side = 0.0 if within is None else np.clip(within - degrees, -_SAME, _SAME)
-        row = self.holding(machine, degrees + side)
-        from_low = degrees - self.right_angle[row] - self.offset[row]
-        from_low = from_low - self.cycle * np.rint((from_low - self.half[row]) / self.cycle)
-        return series_at(
-            (self.rule.series @ values)[:, row], np.clip(from_low / self.half[row] - 1, -1, 1)
-        )
+        piece = self.holding(machine, degrees + side)
+        half = self.half[piece]
+        # where on it the angle is, from −1 to 1
+        from_low = degrees - self.right_angle[piece] - self.offset[piece]
+        from_low = from_low - self.cycle * np.rint((from_low - half) / self.cycle)
+        positions = np.clip(from_low / half - 1, -1, 1)
+        series = (self.rule.series @ values)[:, piece]
+        return series_at(series, positions)
 
     def zeros(self, values: Array, size: Array | None = None) -> Angles:
         """Return where values (nodes, pieces) change sign, by a jump as well, within [0, cycle).
 
         size: (machines,), of the terms whose sum the values are; zero is judged relative to it.
         """
-        size = (self.largest(values) if size is None else size)[self.machine]
-        tiny = -ROUNDING * size
-        rows, places = _crossings(values, self.rule, tiny)
-        jumps = np.flatnonzero((values[-1] < tiny) != (values[0, self.after] < tiny))
-        machine = np.append(self.machine[rows], self.machine[jumps])
-        degrees = np.mod(np.append(self._at(rows, places), self.high[jumps]), self.cycle)
+        # crossings inside the pieces, and jumps from the end of a piece to the start of the next
+        size = self.largest(values) if size is None else size
+        tiny = -ROUNDING * size[self.machine]
+        piece, positions = _crossings(values, self.rule, tiny)
+        is_jump = (values[-1] < tiny) != (values[0, self.after] < tiny)
+        jumps = np.flatnonzero(is_jump)
+        # all of them by machine and angle
+        machine = np.append(self.machine[piece], self.machine[jumps])
+        degrees = np.append(self._degrees_at(piece, positions), self.high[jumps])
+        degrees = np.mod(degrees, self.cycle)
+        if not len(degrees):
+            return NOWHERE
         order = np.lexsort((degrees, machine))
-        machine, degrees = machine[order], degrees[order]
+        machine = machine[order]
+        degrees = degrees[order]
         # near a break rounding may cross several times: an odd number of crossings is one, an even number none
-        begins = np.append(True, (np.diff(degrees) > _SAME) | (np.diff(machine) > 0))[
-            : len(degrees)
-        ]
-        odd = np.bincount(np.cumsum(begins) - 1) % 2 == 1 if len(degrees) else begins
-        return Angles(machine[begins][odd], degrees[begins][odd])
+        begins_group = np.append(True, (np.diff(degrees) > _SAME) | (np.diff(machine) > 0))
+        group = np.cumsum(begins_group) - 1
+        is_odd = np.bincount(group) % 2 == 1
+        return Angles(machine[begins_group][is_odd], degrees[begins_group][is_odd])
 
     def extremes(self, values: Samples, size: Array | None = None) -> SampledExtremes:
         """Return largest and smallest values of quantities, each (nodes, pieces), of equal ones the first.
 
         size: (q, machines), of the terms whose sums the quantities are; a value that is rounding relative to it is 0.
         """
-        low, high = ranges = _ranges(values)
-        largest = np.maximum.reduceat(np.maximum(high, -low), self.first, axis=-1)
+        ranges = _ranges(values)
+        magnitudes = np.maximum(ranges[1], -ranges[0])
+        largest = np.maximum.reduceat(magnitudes, self.first, axis=-1)
         size = largest if size is None else np.maximum(size, largest)
         (high, high_at), (low, low_at) = self.highest(values, ranges, size, (1.0, -1.0))
         # relative to values of the other sign: a zero at a dead centre whose angle is no float, for example
-        high, low = (np.where(np.abs(one) > ROUNDING * size, one, 0.0) for one in (high, low))
+        high = np.where(np.abs(high) > ROUNDING * size, high, 0.0)
+        low = np.where(np.abs(low) > ROUNDING * size, low, 0.0)
+        # the smallest is the largest of the other sign; − 0 becomes 0
         return SampledExtremes(high + 0.0, high_at, 0.0 - low, low_at)
 
     def highest(
@@ -370,52 +380,70 @@ class Pieces:
 
         values: each (nodes, pieces); ranges: see `_ranges`; size: (q, machines), of the terms whose sums they are.
         """
+        # the largest samples of each sign, and what counts as equal to them
         slack = _REPEATED * size
         tops = [sign * ranges[int(sign > 0)] for sign in signs]
         best = [np.maximum.reduceat(top, self.first, axis=-1) for top in tops]
-        # a polynomial exceeds its samples by less than they differ
+        bounds = [largest - slack for largest in best]
+
+        # pieces that may reach these: a polynomial exceeds its samples by less than they differ
         over = ranges[1] - ranges[0]
-        may = [top + over >= (one - slack)[:, self.machine] for top, one in zip(tops, best)]
-        which, piece = _where(np.logical_or.reduce(may))
+        may_reach = [top + over >= bound[:, self.machine] for top, bound in zip(tops, bounds)]
+        quantity, piece = _where(np.logical_or.reduce(may_reach))
+        machine = self.machine[piece]
         samples = np.concatenate(
-            [one[:, piece[which == q]] for q, one in enumerate(values)], axis=1
+            [value[:, piece[quantity == q]] for q, value in enumerate(values)], axis=1
         )
-        # by less, too, than one sample differs from the next
-        steps, owner = np.abs(np.diff(samples, axis=0)).max(axis=0), self.machine[piece]
-        may = [
-            top[which, piece] + steps >= (one - slack)[which, owner] for top, one in zip(tops, best)
+        # by less, too, than a sample differs from the next
+        steps = np.abs(np.diff(samples, axis=0)).max(axis=0)
+        may_reach = [
+            top[quantity, piece] + steps >= bound[quantity, machine]
+            for top, bound in zip(tops, bounds)
         ]
-        near = np.flatnonzero(np.logical_or.reduce(may))
-        which, piece, samples, owner = which[near], piece[near], samples[:, near], owner[near]
-        straight = _STRAIGHT * size[which, owner]
-        # where all samples are equal but for rounding, it alone turns
-        bent = np.flatnonzero(over[which, piece] > straight)
-        rows, places, turning = _turning_points(samples[:, bent], self.rule)
-        inside = np.abs(places) < _INSIDE
-        rows, places, turning = bent[rows[inside]], places[inside], turning[inside]
+        near = np.flatnonzero(np.logical_or.reduce(may_reach))
+        quantity = quantity[near]
+        piece = piece[near]
+        machine = machine[near]
+        samples = samples[:, near]
+
+        # summits inside them; where all samples are equal but for rounding, it alone turns
+        straight = _STRAIGHT * size[quantity, machine]
+        bent = np.flatnonzero(over[quantity, piece] > straight)
+        column, positions, summits = _turning_points(samples[:, bent], self.rule)
+        inside = np.abs(positions) < _INSIDE
+        column = bent[column[inside]]
+        positions = positions[inside]
+        summits = summits[inside]
         # by the rounding of a straight line nothing exceeds its ends
-        low, high = ranges[:, which[rows], piece[rows]]
-        beyond = (turning > high + straight[rows]) | (turning < low - straight[rows])
-        turning = np.where(beyond, turning, np.clip(turning, low, high))
-        value = np.concatenate((samples[0], samples[-1], turning))
-        degrees = np.concatenate((self.low[piece], self.high[piece], self._at(piece[rows], places)))
-        cell = which * self.count + owner
-        cell = np.concatenate((cell, cell, cell[rows]))
+        low, high = ranges[:, quantity[column], piece[column]]
+        is_low_summit = summits < low - straight[column]
+        is_high_summit = summits > high + straight[column]
+        is_summit = is_low_summit | is_high_summit
+        summits = np.where(is_summit, summits, np.clip(summits, low, high))
+
+        # the first of the largest values among both ends and the summits
+        value = np.concatenate((samples[0], samples[-1], summits))
+        summit_degrees = self._degrees_at(piece[column], positions)
+        degrees = np.concatenate((self.low[piece], self.high[piece], summit_degrees))
+        cell = quantity * self.count + machine
+        cell = np.concatenate((cell, cell, cell[column]))
         return [
-            _first_summits(cell, degrees, sign * value, one, slack)
-            for sign, one in zip(signs, best)
+            _first_summits(cell, degrees, sign * value, largest, slack)
+            for sign, largest in zip(signs, best)
         ]
 
-    def _at(self, rows: Indices, places: Array) -> Array:
-        """Return the angles in degrees at places in [−1, 1] of these pieces."""
-        return self.right_angle[rows] + (self.offset[rows] + self.half[rows] * (1 + places))
+    def _degrees_at(self, piece: Indices, positions: Array) -> Array:
+        """Return the angles in degrees at positions in [−1, 1] of these pieces."""
+        from_right_angle = self.offset[piece] + self.half[piece] * (1 + positions)
+        return self.right_angle[piece] + from_right_angle
 
     def ranges(self, values: Array) -> tuple[Array, Array]:
         """Return smallest and largest value (pieces,) of samples inside each piece."""
-        rows, _, turning = _turning_points(values, self.rule)
-        low, high = np.minimum(values[0], values[-1]), np.maximum(values[0], values[-1])
-        np.minimum.at(low, rows, turning)
-        np.maximum.at(high, rows, turning)
+        piece, _, summits = _turning_points(values, self.rule)
+        low = np.minimum(values[0], values[-1])
+        high = np.maximum(values[0], values[-1])
+        np.minimum.at(low, piece, summits)
+        np.maximum.at(high, piece, summits)
         return low, high
 
 
@@ -424,19 +452,20 @@ def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
 
     parts: each with the degrees, a number or (machines,), by which its angle lags that of the common pieces.
     """
-    first = parts[0][0]
-    if len(parts) == 1 and not np.any(parts[0][1]) and first.cycle == cycle:
+    first, first_lag = parts[0]
+    if len(parts) == 1 and first.cycle == cycle and not np.any(first_lag):
         return first
+    # the angles at which the pieces of any part begin, in every turn of the cycle
     machine: list[Indices] = []
     degrees: list[Array] = []
-    for one, later in parts:
-        starts = np.mod(one.low + one.of(later), one.cycle)
-        degrees += [starts + turn for turn in np.arange(0.0, cycle, one.cycle)]
-        machine += [one.machine] * (len(degrees) - len(machine))
-    nodes = max(len(one.rule.nodes) for one, _ in parts)
-    return Pieces.between(
-        Angles(np.concatenate(machine), np.concatenate(degrees)), first.count, cycle, nodes
-    )
+    for pieces, lag in parts:
+        starts = np.mod(pieces.low + pieces.of(lag), pieces.cycle)
+        for turn in np.arange(0.0, cycle, pieces.cycle):
+            machine.append(pieces.machine)
+            degrees.append(starts + turn)
+    breaks = Angles(np.concatenate(machine), np.concatenate(degrees))
+    nodes = max(len(pieces.rule.nodes) for pieces, _ in parts)
+    return Pieces.between(breaks, first.count, cycle, nodes)
 
 
 def resolved(
@@ -452,8 +481,10 @@ def resolved(
     pieces) and the parts (p, nodes, pieces) there. parts: polynomials on the given pieces; kinks: (k, nodes, pieces),
     quantities at whose zeros a function bends; size: (k, machines), relative to which a kink counts as zero.
     """
-    cuts = [pieces.zeros(one, beside) for one, beside in zip(kinks, size)]
-    cut = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*cuts))))
+    zeros = [pieces.zeros(kink, kink_size) for kink, kink_size in zip(kinks, size)]
+    machine = np.concatenate([angles.machine for angles in zeros])
+    degrees = np.concatenate([angles.degrees for angles in zeros])
+    cut = pieces.split(Angles(machine, degrees))
     return _halved_until_smooth(cut, function, cut.carried(parts, pieces))
 
 
@@ -462,8 +493,13 @@ def refined(pieces: Pieces, sample: Sample, judged: int | None = None) -> tuple[
 
     judged: how many of the samples are, the first ones; the others come along.
     """
-    nothing = np.zeros((0, *pieces.degrees.shape))
-    return _halved_until_smooth(pieces, lambda some, _: sample(some), nothing, judged=judged)[:2]
+
+    def function(pieces: Pieces, _: Array) -> Samples:
+        return sample(pieces)
+
+    no_parts = np.zeros((0, *pieces.degrees.shape))
+    fine, values, _ = _halved_until_smooth(pieces, function, no_parts, judged=judged)
+    return fine, values
 
 
 def highest(
@@ -475,12 +511,15 @@ def highest(
     """
     fine, values, _ = _halved_until_smooth(pieces, function, parts, only_highest=True)
     ranges = _ranges(values)
-    return fine.highest(values, ranges, np.maximum.reduceat(ranges[1], fine.first, axis=-1))[0]
+    size = np.maximum.reduceat(ranges[1], fine.first, axis=-1)
+    return fine.highest(values, ranges, size)[0]
 
 
 def _ranges(values: Samples) -> Array:
     """Return the smallest and the largest samples of quantities on every piece, (2, q, pieces)."""
-    return np.array([[edge(value, axis=0) for value in values] for edge in (np.min, np.max)])
+    smallest = [value.min(axis=0) for value in values]
+    largest = [value.max(axis=0) for value in values]
+    return np.array([smallest, largest])
 
 
 def _halved_until_smooth(
@@ -494,44 +533,61 @@ def _halved_until_smooth(
 
     only_highest: where they may have their largest values; the other pieces are left out. judged: see `refined`.
     """
-    todo, size = pieces, np.zeros(())
+    todo = pieces
+    size = np.zeros(())
     done: list[tuple[Pieces, Indices, Sequence[Array]]] = []
     while True:
         values = function(todo, parts)
         tested = values[:judged]
         low, high = _ranges(tested)
-        top, first = (
-            np.zeros((len(tested), pieces.count)),
-            np.flatnonzero(np.diff(todo.machine, prepend=-1)),
-        )
-        top[:, todo.machine[first]] = np.maximum.reduceat(np.maximum(high, -low), first, axis=-1)
-        size = np.maximum(size, top)
-        may = np.True_
+
+        # the largest magnitude so far in each machine; not all of them still have pieces here
+        first = np.flatnonzero(np.diff(todo.machine, prepend=-1))
+        magnitudes = np.maximum(high, -low)
+        largest = np.zeros((len(tested), pieces.count))
+        largest[:, todo.machine[first]] = np.maximum.reduceat(magnitudes, first, axis=-1)
+        size = np.maximum(size, largest)
+
+        # a polynomial exceeds its samples by less than they differ
+        may_be_highest = np.True_
         if only_highest:
-            may = ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
-            some = may.any(axis=0)
-            todo, may, parts = todo.taken(some), may[:, some], parts[..., some]
-            values = tested = [value[:, some] for value in values]
-        # a crowd of rough pieces that halving does not thin out is noise
-        tails = may * np.array([np.abs(todo.rule.series[-2:] @ one).max(axis=0) for one in tested])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.nan_to_num(tails / size[:, todo.machine], nan=0.0, posinf=0.0).max(axis=0)
-        rough = (share > TAIL) & (todo.half > NARROWEST / 2)
-        crowd = np.bincount(todo.machine[rough], minlength=todo.count) > _CROWD
-        rough &= ((share > _NOISE) & (len(done) < _OFTEN)) | ~crowd[todo.machine]
-        if not (done or rough.any()):
+            may_be_highest = ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
+            counts = may_be_highest.any(axis=0)
+            todo = todo.taken(counts)
+            may_be_highest = may_be_highest[:, counts]
+            parts = parts[..., counts]
+            values = tested = [value[:, counts] for value in values]
+
+        # smooth pieces are done, the others are halved
+        coefficients = [todo.rule.series[-2:] @ value for value in tested]
+        tails = may_be_highest * np.array([np.abs(last).max(axis=0) for last in coefficients])
+        is_rough = _find_rough(todo, tails, size, len(done))
+        if not (done or is_rough.any()):
             return todo, values, parts
-        done.append((todo, np.flatnonzero(~rough), [*values, *parts]))
-        if not rough.any():
+        done.append((todo, np.flatnonzero(~is_rough), [*values, *parts]))
+        if not is_rough.any():
             break
-        nodes, halved = len(pieces.rule.nodes), 2 * np.count_nonzero(rough)
-        halves = (pieces.rule.halving @ parts[..., rough]).reshape(
-            len(parts), 2, nodes, halved // 2
-        )
-        parts = halves.transpose(0, 2, 3, 1).reshape(len(parts), nodes, halved)
-        todo = todo.halved(rough)
-    whole, both = joined_pieces(done)
-    return whole, both[: len(values)], both[len(values) :]
+        todo = todo.halved(is_rough)
+        nodes = len(pieces.rule.nodes)
+        halves = pieces.rule.halving @ parts[..., is_rough]
+        halves = halves.reshape(len(parts), 2, nodes, len(todo.half) // 2)
+        parts = halves.transpose(0, 2, 3, 1).reshape(len(parts), nodes, len(todo.half))
+    fine, samples = joined_pieces(done)
+    return fine, samples[: len(values)], samples[len(values) :]
+
+
+def _find_rough(pieces: Pieces, tails: Array, size: Array, halvings: int) -> Flags:
+    """Return on which pieces any quantity is no polynomial yet, by the tails (q, pieces) of its coefficients.
+
+    size: (q, machines), the largest magnitudes. A crowd of rough pieces that halving does not thin out is noise.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.nan_to_num(tails / size[:, pieces.machine], nan=0.0, posinf=0.0)
+    share = shares.max(axis=0)
+    is_rough = (share > TAIL) & (pieces.half > NARROWEST / 2)
+    is_crowded = np.bincount(pieces.machine[is_rough], minlength=pieces.count) > _CROWD
+    is_above_noise = (share > _NOISE) & (halvings < _OFTEN)
+    return is_rough & (is_above_noise | ~is_crowded[pieces.machine])
 
 
 def joined_pieces(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pieces, Array]:
@@ -539,22 +595,29 @@ def joined_pieces(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> t
 
     parts: pieces, which of them are taken, and the samples of each quantity on all of them.
     """
+    # the pieces that are taken, in order
     taken = [pieces.taken(rows) for pieces, rows, _ in parts]
-    columns = [(one.right_angle, one.offset, one.half, one.machine) for one in taken]
-    right_angle, offset, half, machine = (np.concatenate(column) for column in zip(*columns))
+    right_angle = np.concatenate([pieces.right_angle for pieces in taken])
+    offset = np.concatenate([pieces.offset for pieces in taken])
+    half = np.concatenate([pieces.half for pieces in taken])
+    machine = np.concatenate([pieces.machine for pieces in taken])
+    joined = replace(taken[0], right_angle=right_angle, offset=offset, half=half, machine=machine)
     order = np.lexsort((offset, right_angle, machine))
-    whole = replace(
-        taken[0], right_angle=right_angle, offset=offset, half=half, machine=machine
-    ).taken(order)
-    before = np.cumsum([0, *(len(pieces.half) for pieces, _, _ in parts)])
-    source = np.concatenate([rows + passed for (_, rows, _), passed in zip(parts, before)])[order]
-    values = [part for _, _, part in parts]
-    found = np.empty((len(values[0]), *values[0][0].shape[:-1], len(order)))
-    for quantity, each in zip(found, zip(*values)):
-        np.take(
-            np.concatenate(each, axis=-1), source, axis=-1, out=quantity, mode="clip"
-        )  # without a buffer
-    return whole, found
+
+    # their columns among the samples of all parts, one part behind the other
+    columns = []
+    passed = 0
+    for pieces, rows, _ in parts:
+        columns.append(rows + passed)
+        passed += len(pieces.half)
+    column = np.concatenate(columns)[order]
+    part_values = [values for _, _, values in parts]
+    first_value = part_values[0][0]
+    samples = np.empty((len(part_values[0]), *first_value.shape[:-1], len(order)))
+    for quantity, values in zip(samples, zip(*part_values)):
+        all_values = np.concatenate(values, axis=-1)
+        np.take(all_values, column, axis=-1, out=quantity, mode="clip")  # without a buffer
+    return joined.taken(order), samples
 
 
 def _first_summits(
@@ -562,59 +625,90 @@ def _first_summits(
 ) -> tuple[Array, Array]:
     """Return the largest values (q, machines) and the angles of the first summits that reach them but for the slack.
 
-    best: the largest samples; value: of more places (n,), each of a quantity and machine by its place in `best`.
+    best: the largest samples; value: of more angles (n,), each of a quantity and machine by its number in `best`.
     """
-    largest, slack = best.ravel(), slack.ravel()
+    # the first angle that reaches the largest value
+    largest = best.ravel()
+    slack = slack.ravel()
     np.maximum.at(largest, cell, value)
-    first, level, found = (np.full(largest.shape, empty) for empty in (np.inf, -np.inf, np.inf))
-    reached = value >= (largest - slack)[cell]
-    cell, degrees, value = cell[reached], degrees[reached], value[reached]
+    is_equal = value >= (largest - slack)[cell]
+    cell = cell[is_equal]
+    degrees = degrees[is_equal]
+    value = value[is_equal]
+    first = np.full(largest.shape, np.inf)
     np.minimum.at(first, cell, degrees)
-    own = degrees <= first[cell] + _SUMMIT
-    cell, degrees, value = cell[own], degrees[own], value[own]
+
+    # what is near it belongs to the same summit
+    is_near = degrees <= first[cell] + _SUMMIT
+    cell = cell[is_near]
+    degrees = degrees[is_near]
+    value = value[is_near]
+    level = np.full(largest.shape, -np.inf)
     np.maximum.at(level, cell, value)
-    top = value >= (level - slack / 100)[cell]  # of a plateau the beginning
-    np.minimum.at(found, cell[top], degrees[top])
-    return largest.reshape(best.shape), found.reshape(best.shape)
+
+    # of a plateau the beginning
+    is_top = value >= (level - slack / 100)[cell]
+    summit = np.full(largest.shape, np.inf)
+    np.minimum.at(summit, cell[is_top], degrees[is_top])
+    return largest.reshape(best.shape), summit.reshape(best.shape)
 
 
 def _turning_points(values: Array, of: LobattoRule) -> tuple[Indices, Array, Array]:
-    """Return columns, places in [−1, 1] and values where polynomials through samples (nodes, n) are level."""
+    """Return columns, positions in [−1, 1] and values where polynomials through samples (nodes, n) are level."""
     slopes = of.scan_slope @ values
-    i, rows = _where((slopes[1:] < 0) != (slopes[:-1] < 0))
-    series = of.series @ values[:, rows]
-    places = _roots(
-        of.slope @ series, of.places[i], of.places[i + 1], slopes[i, rows], slopes[i + 1, rows]
-    )
-    return rows, places, series_at(series, places)
+    interval, column = _where((slopes[1:] < 0) != (slopes[:-1] < 0))
+    low = of.scan_positions[interval]
+    high = of.scan_positions[interval + 1]
+    low_slope = slopes[interval, column]
+    high_slope = slopes[interval + 1, column]
+    series = of.series @ values[:, column]
+    positions = _roots(of.slope @ series, low, high, low_slope, high_slope)
+    return column, positions, series_at(series, positions)
 
 
 def _crossings(values: Array, of: LobattoRule, tiny: Array) -> tuple[Indices, Array]:
-    """Return columns and places in [−1, 1] where polynomials through samples (nodes, n) pass tiny (n,), nearly zero."""
+    """Return columns and positions in [−1, 1] where polynomials through samples (nodes, n) pass tiny (n,), nearly zero."""
     # a polynomial exceeds its samples by less than they differ
-    bottoms, tops = values.min(axis=0), values.max(axis=0)
-    some = np.flatnonzero((2 * bottoms - tops <= -tiny) & (2 * tops - bottoms >= tiny))
-    values, tiny = values[:, some], tiny[some]
+    bottoms = values.min(axis=0)
+    tops = values.max(axis=0)
+    may_cross = (2 * bottoms - tops <= -tiny) & (2 * tops - bottoms >= tiny)
+    candidates = np.flatnonzero(may_cross)
+    values = values[:, candidates]
+    tiny = tiny[candidates]
+
+    # a change of sign between neighbours of a finer scan
     fine = of.scan @ values
-    below = fine < tiny
-    i, rows = _where(below[1:] != below[:-1])
-    low, high, first, last = of.places[i], of.places[i + 1], fine[i, rows], fine[i + 1, rows]
-    # between two places of one sign a summit may pass zero and come back
+    is_below = fine < tiny
+    interval, column = _where(is_below[1:] != is_below[:-1])
+    low = of.scan_positions[interval]
+    high = of.scan_positions[interval + 1]
+    first = fine[interval, column]
+    last = fine[interval + 1, column]
+
+    # between neighbours of the same sign a summit may pass zero and come back
     near = np.flatnonzero(np.abs(fine).min(axis=0) < _NEAR * np.ptp(fine, axis=0))
-    owner, turns, value = _turning_points(values[:, near], of)
+    owner, turns, summits = _turning_points(values[:, near], of)
     owner = near[owner]
-    before = np.clip(np.searchsorted(of.places, turns, side="right") - 1, 0, len(of.places) - 2)
-    there = below[before, owner] & below[before + 1, owner] & (value > -tiny[owner])
-    there |= ~below[before, owner] & ~below[before + 1, owner] & (value < tiny[owner])
-    owner, turns, value, before = owner[there], turns[there], value[there], before[there]
-    rows = np.concatenate((rows, owner, owner))
-    low, high = (
-        np.concatenate((low, of.places[before], turns)),
-        np.concatenate((high, turns, of.places[before + 1])),
-    )
-    first = np.concatenate((first, fine[before, owner], value))
-    last = np.concatenate((last, value, fine[before + 1, owner]))
-    return some[rows], _roots(of.series @ values[:, rows], low, high, first, last)
+    before = np.searchsorted(of.scan_positions, turns, side="right") - 1
+    before = np.clip(before, 0, len(of.scan_positions) - 2)
+    starts_below = is_below[before, owner]
+    ends_below = is_below[before + 1, owner]
+    rises_through = starts_below & ends_below & (summits > -tiny[owner])
+    falls_through = ~starts_below & ~ends_below & (summits < tiny[owner])
+    passes = rises_through | falls_through
+    owner = owner[passes]
+    turns = turns[passes]
+    summits = summits[passes]
+    before = before[passes]
+
+    # it crosses once on either side of the summit
+    column = np.concatenate((column, owner, owner))
+    low = np.concatenate((low, of.scan_positions[before], turns))
+    high = np.concatenate((high, turns, of.scan_positions[before + 1]))
+    first = np.concatenate((first, fine[before, owner], summits))
+    last = np.concatenate((last, summits, fine[before + 1, owner]))
+    positions = _roots(of.series @ values[:, column], low, high, first, last)
+    return candidates[column], positions
 
 
 def _where(flags: Flags) -> tuple[Indices, Indices]:
@@ -624,13 +718,12 @@ def _where(flags: Flags) -> tuple[Indices, Indices]:
 
 def _roots(series: Array, low: Array, high: Array, first: Array, last: Array) -> Array:
     """Return the zeros of series (k, n) between low and high (n,), where they are first and last."""
-    both = np.zeros((len(series), 2, len(low)))
-    both[:, 0], both[:-1, 1] = series, slope_of_series(len(series)) @ series
-    return bracketed_roots(
-        lambda at: series_at(both, np.broadcast_to(at, (2, len(at)))),
-        low,
-        high,
-        first,
-        last,
-        _SETTLED,
-    )
+    # of the functions and their slopes, summed together
+    coefficients = np.zeros((len(series), 2, len(low)))
+    coefficients[:, 0] = series
+    coefficients[:-1, 1] = slope_of_series(len(series)) @ series
+
+    def values_and_slopes(positions: Array) -> Array:
+        return series_at(coefficients, np.broadcast_to(positions, (2, len(positions))))
+
+    return bracketed_roots(values_and_slopes, low, high, first, last, _SETTLED)

@@ -6,7 +6,7 @@ A function maps places (n, k), each from 0 to 1, to values (n,); a value is nan 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import product
+from itertools import permutations, product
 from typing import NamedTuple
 
 import numpy as np
@@ -63,52 +63,53 @@ def roots(function: RealFunction, size: float = 0.0) -> Roots:
     """
     x, y = _sampled(function)
     spread = np.nanmax(np.abs(y), initial=0.0)
-    y = _zero_at_ends(y, _ROUNDING * size)
+    rounding = _ROUNDING * size
+    y = _zero_at_ends(y, rounding)
 
     # where it is zero at samples: a stretch counts as one root
-    is_zero = np.abs(y) <= _ROUNDING * size
-    starts, stops = _runs(is_zero)
+    starts, stops = _runs(np.abs(y) <= rounding)
     is_level = x[stops] - x[starts] > _LEVEL
-    inside = np.zeros(len(x), dtype=bool)
-    for start, stop in zip(starts[is_level], stops[is_level]):
-        inside[start : stop + 1] = True
-    alone = x[(y == 0) & ~inside]
+    starts = starts[is_level]
+    stops = stops[is_level]
+    is_inside = np.zeros(len(x), dtype=bool)
+    for start, stop in zip(starts, stops):
+        is_inside[start : stop + 1] = True
+    alone = x[(y == 0) & ~is_inside]
 
-    # where it changes sign between two samples
-    passed = np.flatnonzero((y[:-1] * y[1:] < 0) & ~inside[:-1] & ~inside[1:])
-    found: Array = np.empty(0)
-    if len(passed):
-        found = _closed(
-            lambda places: np.nan_to_num(function(places[:, None])),
-            x[passed],
-            x[passed + 1],
-            y[passed],
-            y[passed + 1],
-        )
-    left = function(found[:, None]) if len(found) else found
-    there = np.isfinite(left)
-    found, left = found[there], left[there]
+    # where it changes sign between two samples; what is left there tells a jump from a zero
+    low = np.flatnonzero((y[:-1] * y[1:] < 0) & ~is_inside[:-1] & ~is_inside[1:])
+    high = low + 1
+    crossings: Array = np.empty(0)
+    left: Array = np.empty(0)
+    if len(low):
+
+        def finite_values(points: Array) -> Array:
+            return np.nan_to_num(function(points[:, None]))
+
+        crossings = _closed(finite_values, x[low], x[high], y[low], y[high])
+        left = function(crossings[:, None])
+    has_value = np.isfinite(left)
+    crossings = crossings[has_value]
+    is_jump = np.abs(left[has_value]) > _LEFT * spread
 
     # all of them in order
-    begins, ends = starts[is_level], stops[is_level]
-    levels = _edges(function, x[begins], x[np.maximum(begins - 1, 0)], _ROUNDING * size)
-    last = _edges(function, x[ends], x[np.minimum(ends + 1, len(x) - 1)], _ROUNDING * size)
-    places = np.concatenate((levels, alone, found))
-    order = np.argsort(places, kind="stable")
-    single = np.full(len(alone) + len(found), np.nan)
-    until = np.concatenate((last, single))
-    jumps = np.concatenate(
-        (np.zeros(len(levels) + len(alone), dtype=bool), np.abs(left) > _LEFT * spread)
-    )
-    return Roots(places[order], jumps[order], until[order])
+    levels = _edges(function, x[starts], x[np.maximum(starts - 1, 0)], rounding)
+    level_ends = _edges(function, x[stops], x[np.minimum(stops + 1, len(x) - 1)], rounding)
+    points = np.concatenate((levels, alone, crossings))
+    order = np.argsort(points, kind="stable")
+    no_stretch = np.full(len(alone) + len(crossings), np.nan)
+    until = np.concatenate((level_ends, no_stretch))
+    no_jump = np.zeros(len(levels) + len(alone), dtype=bool)
+    jumps = np.concatenate((no_jump, is_jump))
+    return Roots(points[order], jumps[order], until[order])
 
 
 def _zero_at_ends(y: Array, rounding: float) -> Array:
     """Return samples that are exactly zero at either end where only rounding is left there and no root is beside it."""
     y = y.copy()
-    for end, beside in ((0, 1), (-1, -2)):
+    for end, neighbour in ((0, 1), (-1, -2)):
         is_rounding = abs(y[end]) <= rounding
-        if is_rounding and not y[end] * y[beside] < 0:
+        if is_rounding and not y[end] * y[neighbour] < 0:
             y[end] = 0.0
     return y
 
@@ -118,38 +119,56 @@ def _edges(function: RealFunction, zero: Array, beyond: Array, rounding: float) 
     for _ in range(_HALVES if len(zero) else 0):
         middle = (zero + beyond) / 2
         is_zero = np.abs(function(middle[:, None])) <= rounding
-        zero, beyond = np.where(is_zero, middle, zero), np.where(is_zero, beyond, middle)
+        zero = np.where(is_zero, middle, zero)
+        beyond = np.where(is_zero, beyond, middle)
     return zero
 
 
 def _runs(flags: Flags) -> tuple[Indices, Indices]:
     """Return the first and the last index of every run of true flags."""
     padded = np.concatenate(([False], flags, [False]))
-    return np.flatnonzero(padded[1:] & ~padded[:-1]), np.flatnonzero(padded[:-1] & ~padded[1:]) - 1
+    starts = np.flatnonzero(padded[1:] & ~padded[:-1])
+    stops = np.flatnonzero(padded[:-1] & ~padded[1:]) - 1
+    return starts, stops
 
 
 def _closed(function: RealFunction, low: Array, high: Array, f_low: Array, f_high: Array) -> Array:
     """Return a root in each bracket (n,): inverse quadratic steps where they are safe, else halves (Chandrupatla)."""
-    a, b, fa, fb = high, low, f_high, f_low
+    # a: the newest point, b: that on the other side of the root, c: the one before
+    a = high
+    fa = f_high
+    b = low
+    fb = f_low
     part = np.full_like(a, 0.5)
     for _ in range(100):
+        # until the brackets are as narrow as rounding
         width = np.maximum(np.abs(b - a), 1e-300)
-        least = np.minimum(np.spacing(np.maximum(np.abs(a), np.abs(b))) / width, 0.5)
-        if ((width * least >= width / 2) | (fa == 0) | (fb == 0)).all():
+        largest = np.maximum(np.abs(a), np.abs(b))
+        least = np.minimum(np.spacing(largest) / width, 0.5)
+        is_narrow = width * least >= width / 2
+        if (is_narrow | (fa == 0) | (fb == 0)).all():
             break
+
+        # the new point takes the place of the end with its sign
         middle = a + np.clip(part, least, 1 - least) * (b - a)
         f_middle = function(middle)
-        same = np.sign(f_middle) == np.sign(fa)
-        c, fc = np.where(same, a, b), np.where(same, fa, fb)
-        b, fb = np.where(same, b, a), np.where(same, fb, fa)
-        a, fa = middle, f_middle
+        has_sign_of_a = np.sign(f_middle) == np.sign(fa)
+        c = np.where(has_sign_of_a, a, b)
+        fc = np.where(has_sign_of_a, fa, fb)
+        b = np.where(has_sign_of_a, b, a)
+        fb = np.where(has_sign_of_a, fb, fa)
+        a = middle
+        fa = f_middle
+
+        # the root of the inverse parabola through the three points, where it is monotonic
         with np.errstate(all="ignore"):
-            xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
-            step = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (
-                fc - fb
-            )
-        safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi) & np.isfinite(step)
-        part = np.where(safe, np.clip(step, 0.0, 1.0), 0.5)
+            xi = (a - b) / (c - b)
+            phi = (fa - fb) / (fc - fb)
+            from_b = fa / (fb - fa) * fc / (fb - fc)
+            from_c = (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+            step = from_b + from_c
+        is_safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi) & np.isfinite(step)
+        part = np.where(is_safe, np.clip(step, 0.0, 1.0), 0.5)
     return np.where(np.abs(fa) < np.abs(fb), a, b)
 
 
@@ -157,47 +176,58 @@ def _sampled(function: RealFunction) -> tuple[Array, Array]:
     """Return places (n,) and values (n,): dense where the function bends, and near the ends of its domain."""
     x = np.linspace(0.0, 1.0, _PLACES)
     y = function(x[:, None])
-    while len(x) < _MOST and len(halved := _to_halve(x, y)):
-        more = (x[halved] + x[halved + 1])[: _MOST - len(x)] / 2
-        x, y = _joined(x, y, more, function)
-    for _ in range(8):  # until the intervals without a value at one end are 1/16⁸ as wide
-        ends = np.flatnonzero(np.isfinite(y[:-1]) != np.isfinite(y[1:]))
-        ends = ends[np.diff(x)[ends] > _NARROWEST**2]
+    # where it bends
+    halved = _to_halve(x, y)
+    while len(halved) and len(x) < _MOST:
+        middles = (x[halved] + x[halved + 1])[: _MOST - len(x)] / 2
+        x, y = _joined(x, y, middles, function)
+        halved = _to_halve(x, y)
+
+    # until the intervals without a value at one end are 1/16⁸ as wide
+    parts = np.arange(1, _PARTS) / _PARTS
+    for _ in range(8):
+        widths = np.diff(x)
+        has_value = np.isfinite(y)
+        ends = np.flatnonzero(has_value[:-1] != has_value[1:])
+        ends = ends[widths[ends] > _NARROWEST**2]
         if not len(ends):
             break
-        parts = np.arange(1, _PARTS) / _PARTS
-        x, y = _joined(x, y, (x[ends, None] + np.diff(x)[ends, None] * parts).ravel(), function)
+        inner = x[ends, None] + widths[ends, None] * parts
+        x, y = _joined(x, y, inner.ravel(), function)
     return x, y
 
 
 def _to_halve(x: Array, y: Array) -> Indices:
     """Return the intervals near which samples deviate from a cubic, or the function may touch zero in between."""
+    # Lagrange's cubic through the two neighbours on either side
     nodes = np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]])
+    samples = np.stack([y[:-4], y[1:-3], y[3:-1], y[4:]])
     weights = np.ones_like(nodes)
-    for one, other in product(range(4), repeat=2):
-        if one != other:
-            weights[one] *= (x[2:-2] - nodes[other]) / (nodes[one] - nodes[other])
-    cubic = (weights * np.stack([y[:-4], y[1:-3], y[3:-1], y[4:]])).sum(axis=0)
-    spread, size = (
-        np.nanmax(y, initial=-np.inf) - np.nanmin(y, initial=np.inf),
-        np.nanmax(np.abs(y), initial=0.0),
-    )
-    bent = np.zeros(len(x), dtype=bool)
-    bent[2:-2] = np.abs(y[2:-2] - cubic) > _LEAVES * spread + _ROUNDING * size
+    for i, j in permutations(range(4), 2):
+        weights[i] *= (x[2:-2] - nodes[j]) / (nodes[i] - nodes[j])
+    cubic = (weights * samples).sum(axis=0)
+    spread = np.nanmax(y, initial=-np.inf) - np.nanmin(y, initial=np.inf)
+    size = np.nanmax(np.abs(y), initial=0.0)
+    is_bent = np.zeros(len(x), dtype=bool)
+    is_bent[2:-2] = np.abs(y[2:-2] - cubic) > _LEAVES * spread + _ROUNDING * size
 
-    near, before, after = y[1:-1], y[:-2], y[2:]
-    dips = (
-        (near * before > 0)
-        & (near * after > 0)
-        & (np.abs(near) <= np.minimum(np.abs(before), np.abs(after)))
-    )
-    bent[1:-1] |= dips & (np.abs(near) < np.maximum(np.abs(before - near), np.abs(after - near)))
-    return np.flatnonzero((bent[:-1] | bent[1:]) & (np.diff(x) > _NARROWEST))
+    # a sample nearer to zero than its neighbours, and about as near as it differs from them
+    middle = y[1:-1]
+    before = y[:-2]
+    after = y[2:]
+    has_no_crossing = (middle * before > 0) & (middle * after > 0)
+    is_nearest = np.abs(middle) <= np.minimum(np.abs(before), np.abs(after))
+    slopes = np.maximum(np.abs(before - middle), np.abs(after - middle))
+    may_touch = has_no_crossing & is_nearest & (np.abs(middle) < slopes)
+    is_bent[1:-1] |= may_touch
+    is_wide = np.diff(x) > _NARROWEST
+    return np.flatnonzero((is_bent[:-1] | is_bent[1:]) & is_wide)
 
 
 def _joined(x: Array, y: Array, more: Array, function: RealFunction) -> tuple[Array, Array]:
     """Return samples with those at more places, in order."""
-    x, y = np.append(x, more), np.append(y, function(more[:, None]))
+    x = np.append(x, more)
+    y = np.append(y, function(more[:, None]))
     order = np.argsort(x)
     return x[order], y[order]
 
@@ -207,55 +237,58 @@ def common_roots(functions: RealFunction) -> Array:
 
     Newton's method starts in every cell of a grid of 16 a side in which both may be zero.
     """
+    # cells whose corners have values on both sides of zero, or nearly; false where a corner has no value
     side = np.linspace(0.0, 1.0, _SIDE)
     grid = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1)
     values = functions(grid.reshape(-1, 2)).reshape(_SIDE, _SIDE, 2)
-    corners = np.stack(
-        [values[i : _SIDE - 1 + i, j : _SIDE - 1 + j] for i, j in product((0, 1), repeat=2)]
-    )
-    low, high = corners.min(axis=0), corners.max(axis=0)
+    corners = np.stack([values[:-1, :-1], values[:-1, 1:], values[1:, :-1], values[1:, 1:]])
+    low = corners.min(axis=0)
+    high = corners.max(axis=0)
     slack = (high - low) / 2  # zero may be passed between the corners
-    starts = ((low - slack <= 0) & (high + slack >= 0)).all(
-        axis=-1
-    )  # false where a corner has no value
-    places = grid[:-1, :-1][starts] + side[1] / 2
+    may_be_zero = (low - slack <= 0) & (high + slack >= 0)
+    is_start = may_be_zero.all(axis=-1)
+    points = grid[:-1, :-1][is_start] + side[1] / 2
+
+    # Newton's method in all of them at once
     spread = np.nanmax(np.abs(values), axis=(0, 1), initial=0.0)
-    left = np.full(places.shape, np.nan)
-    for _ in range(30 if len(places) else 0):
-        left, slopes = _slopes(functions, places)
+    left = np.full(points.shape, np.nan)
+    for _ in range(30 if len(points) else 0):
+        left, slopes = _slopes(functions, points)
         with np.errstate(all="ignore"):
             determinant = slopes[:, 0, 0] * slopes[:, 1, 1] - slopes[:, 0, 1] * slopes[:, 1, 0]
             first = (slopes[:, 1, 1] * left[:, 0] - slopes[:, 0, 1] * left[:, 1]) / determinant
             second = (slopes[:, 0, 0] * left[:, 1] - slopes[:, 1, 0] * left[:, 0]) / determinant
         steps = np.nan_to_num(np.stack([first, second], axis=1), posinf=0.0, neginf=0.0)
-        following = np.clip(places - np.clip(steps, -side[1], side[1]), 0.0, 1.0)
-        if np.abs(following - places).max() < 1e-15:
+        steps = np.clip(steps, -side[1], side[1])
+        new = np.clip(points - steps, 0.0, 1.0)
+        if np.abs(new - points).max() < 1e-15:
             break
-        places = following
-    found = places[(np.abs(left) <= _ROUNDING * 10 * spread).all(axis=1)]
-    found = found[np.lexsort(found.T[::-1])]
-    kept: list[Array] = []
-    for one in found:
-        if all(np.abs(one - other).max() > _SAME for other in kept):
-            kept.append(one)
-    return np.array(kept).reshape(-1, 2)
+        points = new
+
+    # where both functions have vanished, in order, each root once
+    is_root = (np.abs(left) <= _ROUNDING * 10 * spread).all(axis=1)
+    points = points[is_root]
+    points = points[np.lexsort(points.T[::-1])]
+    distinct: list[Array] = []
+    for point in points:
+        distances = [np.abs(point - root).max() for root in distinct]
+        if min(distances, default=np.inf) > _SAME:
+            distinct.append(point)
+    return np.array(distinct).reshape(-1, 2)
 
 
-def _slopes(functions: RealFunction, places: Array) -> tuple[Array, Array]:
-    """Return two functions (n, 2) and their slopes (n, functions, places) by central differences."""
+def _slopes(functions: RealFunction, points: Array) -> tuple[Array, Array]:
+    """Return two functions (n, 2) and their slopes (n, functions, axes) by central differences."""
     step = 1e-6
-    moved = [
-        np.clip(places + sign * step * np.eye(2)[axis], 0.0, 1.0)
-        for axis in (0, 1)
-        for sign in (1, -1)
-    ]
-    values = functions(np.concatenate([places, *moved])).reshape(5, -1, 2)
-    columns = [
-        (values[1 + 2 * axis] - values[2 + 2 * axis])
-        / (moved[2 * axis] - moved[2 * axis + 1])[:, axis, None]
-        for axis in (0, 1)
-    ]
-    return values[0], np.stack(columns, axis=-1)
+    shifts = step * np.eye(2)
+    right = np.clip(points + shifts[0], 0.0, 1.0)
+    left = np.clip(points - shifts[0], 0.0, 1.0)
+    above = np.clip(points + shifts[1], 0.0, 1.0)
+    below = np.clip(points - shifts[1], 0.0, 1.0)
+    values = functions(np.concatenate([points, right, left, above, below])).reshape(5, -1, 2)
+    by_x = (values[1] - values[2]) / (right - left)[:, 0, None]
+    by_y = (values[3] - values[4]) / (above - below)[:, 1, None]
+    return values[0], np.stack([by_x, by_y], axis=-1)
 
 
 def lowest(function: RealFunction, sides: int) -> tuple[Array, float]:
@@ -266,59 +299,76 @@ def lowest(function: RealFunction, sides: int) -> tuple[Array, float]:
     and stays as large while its lowest place is on its edge.
     """
     side = np.linspace(0.0, 1.0, _PLACES if sides == 1 else _FINE_SIDE)
-    grid = np.stack(np.meshgrid(*[side] * sides, indexing="ij"), axis=-1)
-    cost: Array = _cost(function, grid.reshape(-1, sides)).reshape(grid.shape[:-1])
-    around = np.pad(cost, 1, constant_values=np.inf)
-    shifts = [
-        tuple(slice(1 + d, 1 + d + len(side)) for d in shift)
-        for shift in product((-1, 0, 1), repeat=sides)
-    ]
-    valleys = np.isfinite(cost) & (cost <= np.min([around[shift] for shift in shifts], axis=0))
-    centres = grid[valleys][np.argsort(cost[valleys], kind="stable")[:_CANDIDATES]]
+    centres = _valleys(function, side, sides)
     if not len(centres):
         return np.full(sides, np.nan), np.inf
 
+    # a smaller grid about each valley; its axes are rows
     count, few = (17, 4) if sides == 1 else (9, 16)
     offsets = np.array([*product(np.linspace(-1.0, 1.0, count), repeat=sides)])
-    axes: Array = np.tile(np.eye(sides) * side[1], (len(centres), 1, 1))  # of each grid, as rows
+    axes: Array = np.tile(np.eye(sides) * side[1], (len(centres), 1, 1))
     values: Array = np.full(len(centres), np.inf)
     for _ in range(_MOST_GRIDS):
-        places = np.clip(centres[:, None] + offsets @ axes, 0.0, 1.0)
-        cost = _cost(function, places.reshape(-1, sides)).reshape(len(centres), -1)
+        # the few lowest points of each grid, in order
+        points = np.clip(centres[:, None] + offsets @ axes, 0.0, 1.0)
+        cost = _cost(function, points.reshape(-1, sides)).reshape(len(centres), -1)
         order = np.argsort(cost, axis=1, kind="stable")[:, :few]
-        low, near = (
-            np.take_along_axis(cost, order, axis=1),
-            np.take_along_axis(places, order[..., None], axis=1),
-        )
-        lower = low[:, 0] < values
-        edge = (np.abs(offsets[order[:, 0]]) == 1).any(axis=1) & lower
-        centres, values = (
-            np.where(lower[:, None], near[:, 0], centres),
-            np.where(lower, low[:, 0], values),
-        )
-        kept, share = np.where(edge, 1.0, 0.0), np.where(lower, 1.0, 0.7)
-        axes = kept[:, None, None] * axes + share[:, None, None] * _spread(near, low, centres)
-        alike = low[:, -1] - values <= _EQUAL * np.abs(values)
-        if (alike | (np.abs(axes).max(axis=(1, 2)) < _CLOSE)).all():
+        low = np.take_along_axis(cost, order, axis=1)
+        near = np.take_along_axis(points, order[..., None], axis=1)
+
+        # a lower point becomes the centre; on the edge of its grid, this stays as large
+        is_lower = low[:, 0] < values
+        is_on_edge = (np.abs(offsets[order[:, 0]]) == 1).any(axis=1) & is_lower
+        centres = np.where(is_lower[:, None], near[:, 0], centres)
+        values = np.where(is_lower, low[:, 0], values)
+        old_share = np.where(is_on_edge, 1.0, 0.0)
+        new_share = np.where(is_lower, 1.0, 0.7)
+        new_axes = _spread(near, low, centres)
+        axes = old_share[:, None, None] * axes + new_share[:, None, None] * new_axes
+
+        # until all points are equal or close together
+        is_equal = low[:, -1] - values <= _EQUAL * np.abs(values)
+        is_close = np.abs(axes).max(axis=(1, 2)) < _CLOSE
+        if (is_equal | is_close).all():
             break
-        rivals = values <= values.min() + np.ptp(
-            np.where(np.isfinite(cost), cost, values[:, None]), axis=1
-        )
-        centres, values, axes = centres[rivals], values[rivals], axes[rivals]
+        # a grid that cannot reach the lowest value is given up
+        finite_cost = np.where(np.isfinite(cost), cost, values[:, None])
+        is_rival = values <= values.min() + np.ptp(finite_cost, axis=1)
+        centres = centres[is_rival]
+        values = values[is_rival]
+        axes = axes[is_rival]
     first = int(np.argmin(values))
     return centres[first], float(values[first])
 
 
+def _valleys(function: RealFunction, side: Array, sides: int) -> Array:
+    """Return the points (n, sides) of a grid that are lower than their neighbours, the few lowest, in order."""
+    grid = np.stack(np.meshgrid(*[side] * sides, indexing="ij"), axis=-1)
+    cost: Array = _cost(function, grid.reshape(-1, sides)).reshape(grid.shape[:-1])
+    padded = np.pad(cost, 1, constant_values=np.inf)
+    lowest_near = cost
+    for shift in product((0, 1, 2), repeat=sides):
+        window = tuple(slice(start, start + len(side)) for start in shift)
+        lowest_near = np.minimum(lowest_near, padded[window])
+    is_valley = np.isfinite(cost) & (cost <= lowest_near)
+    order = np.argsort(cost[is_valley], kind="stable")[:_CANDIDATES]
+    return grid[is_valley][order]
+
+
 def _spread(near: Array, low: Array, centres: Array) -> Array:
-    """Return the axes (n, sides, sides) of grids that spread as places (n, m, sides) do about the lowest ones."""
-    apart = np.where(np.isfinite(low)[..., None], near - centres[:, None], 0.0)
-    squares, directions = np.linalg.eigh(np.swapaxes(apart, 1, 2) @ apart / near.shape[1])
+    """Return the axes (n, sides, sides) of grids that spread as points (n, m, sides) do about the lowest ones."""
+    counts = np.isfinite(low)[..., None]
+    apart = np.where(counts, near - centres[:, None], 0.0)
+    covariance = np.swapaxes(apart, 1, 2) @ apart / near.shape[1]
+    squares, directions = np.linalg.eigh(covariance)
     sizes = _REACH * np.sqrt(np.maximum(squares, 0.0))
-    return np.maximum(sizes, _THIN * sizes[:, -1:])[..., None] * np.swapaxes(directions, 1, 2)
+    sizes = np.maximum(sizes, _THIN * sizes[:, -1:])
+    return sizes[..., None] * np.swapaxes(directions, 1, 2)
 
 
-def _cost(function: RealFunction, places: Array) -> Array:
-    values = function(places)
+def _cost(function: RealFunction, points: Array) -> Array:
+    """Return the values of a function, infinite where it has none."""
+    values = function(points)
     return np.where(np.isnan(values), np.inf, values)
 
 
@@ -338,18 +388,23 @@ def bracketed_roots(
     function: maps all arguments (n,) at once to values and slopes (n,); first, last: its values at the ends, of which
     the signs differ, or one is zero; settled: the last step, relative to the argument or, of a small one, to 1.
     """
-    rising = first < last
-    places = low + (high - low) * (np.abs(first) / np.maximum(np.abs(first) + np.abs(last), 1e-300))
+    # from where the chord is zero
+    is_rising = first < last
+    sum_of_ends = np.maximum(np.abs(first) + np.abs(last), 1e-300)
+    points = low + (high - low) * (np.abs(first) / sum_of_ends)
     size = settled * np.maximum(np.maximum(np.abs(low), np.abs(high)), 1.0)
     for _ in range(60):
-        value, slope = function(places)
-        below = (value < 0) == rising
-        low, high = np.where(below, places, low), np.where(below, high, places)
+        value, slope = function(points)
+        is_before_root = (value < 0) == is_rising
+        low = np.where(is_before_root, points, low)
+        high = np.where(is_before_root, high, points)
+        # Newton's step; where it leaves the bracket, half of that
         with np.errstate(all="ignore"):
-            step = places - value / slope
-        safe = (step >= low - 1e-10) & (step <= high + 1e-10)
-        new = np.where(safe, np.clip(step, low, high), (low + high) / 2)
-        left, places = np.where(safe, np.abs(new - places), high - low), new
+            step = points - value / slope
+        is_safe = (step >= low - 1e-10) & (step <= high + 1e-10)
+        new = np.where(is_safe, np.clip(step, low, high), (low + high) / 2)
+        left = np.where(is_safe, np.abs(new - points), high - low)
+        points = new
         if not (left > size).any():
             break
-    return places
+    return points

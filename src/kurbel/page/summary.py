@@ -2,18 +2,18 @@
 
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TypeVar
 
 import numpy as np
 
-from kurbel.checks.limits import compared_entries, name_of
+from kurbel.checks.limits import CheckEntry, compared_entries, name_of
 from kurbel.declared.unit_systems import convert, show, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.machine.firing import firings
+from kurbel.machine.indicator import Chamber
 from kurbel.machine.several import intervals
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import Extreme, number_of
@@ -127,12 +127,10 @@ def machine_kind(case: Case) -> str:
         return "linkage"
     if first.mechanism.quick_return or first.ram_force:
         return "ram"
-    chambers = [
-        chamber
-        for cylinder in machine.cylinders
-        for piston in cylinder.pistons
-        for chamber in piston.chambers.values()
-    ]
+    chambers: list[Chamber] = []
+    for cylinder in machine.cylinders:
+        for piston in cylinder.pistons:
+            chambers += piston.chambers.values()
     if not chambers:
         return "masses"
     if firings(machine):
@@ -148,26 +146,29 @@ def machine_kind(case: Case) -> str:
 
 def subtitle_of(machine: Machine) -> str:
     """Return number of cylinders, cycle, speed, stroke, rod and bores in a line."""
-    cylinders, texts = machine.cylinders, list[str]()
-    mechanisms = [cylinder.mechanism for cylinder in cylinders]
-    if any(
-        mechanism.slides and not mechanism.quick_return for mechanism in mechanisms
-    ):  # else no piston moves
-        texts.append(f"{len(cylinders)} cylinder{'s' * (len(cylinders) > 1)}")
-    texts += [machine.cycle] if firings(machine) else []
-    texts += [] if machine.speed is None else [show(machine.speed, "speed", 4)]
-    sizes = {
-        "stroke": [
-            mechanism.stroke for mechanism in mechanisms if mechanism.slides and not mechanism.turns
-        ],
-        "rod": [mechanism.rod for mechanism in mechanisms if isinstance(mechanism, SliderCrank)],
-        "bore": [piston.bore for cylinder in cylinders for piston in cylinder.pistons],
-    }
-    for name, lengths in sizes.items():
-        shown = dict.fromkeys(
-            show(float(length), "length", 4) for length in lengths if math.isfinite(length)
-        )
-        texts += [f"{name} {', '.join(shown)}"] if shown else []
+    texts = []
+    mechanisms = [cylinder.mechanism for cylinder in machine.cylinders]
+    has_pistons = any(mechanism.slides and not mechanism.quick_return for mechanism in mechanisms)
+    if has_pistons:
+        count = len(machine.cylinders)
+        texts.append("1 cylinder" if count == 1 else f"{count} cylinders")
+    if firings(machine):
+        texts.append(machine.cycle)
+    if machine.speed is not None:
+        texts.append(show(machine.speed, "speed", 4))
+
+    strokes = [
+        mechanism.stroke for mechanism in mechanisms if mechanism.slides and not mechanism.turns
+    ]
+    rods = [mechanism.rod for mechanism in mechanisms if isinstance(mechanism, SliderCrank)]
+    bores = []
+    for cylinder in machine.cylinders:
+        bores += [piston.bore for piston in cylinder.pistons]
+    for name, lengths in (("stroke", strokes), ("rod", rods), ("bore", bores)):
+        finite = [float(length) for length in lengths if math.isfinite(length)]
+        different = dict.fromkeys(show(length, "length", 4) for length in finite)
+        if different:
+            texts.append(f"{name} {', '.join(different)}")
     return ", ".join(texts)
 
 
@@ -180,66 +181,91 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Fact]:
     """
     kind = machine_kind(case)
     wanted = tuple(ids) or (*_KINDS[kind].split(), *_USUAL.split())
-    known: dict[str, Fact] = {}
+    facts: dict[str, Fact] = {}
     for command, labels in _LABELS.items():
-        subjects = if_any(partial(subjects_of, case, command))
+        subjects = results_if_any(partial(subjects_of, case, command))
         for id in labels:
-            if id in wanted and (one := _largest(id, command, subjects)):
-                known[id] = one
-    # against the rotation, as that of a pump or a compressor
-    against = {"M_max", "M_min"} <= set(known) and abs(known["M_min"].value) > abs(
-        known["M_max"].value
-    )
-    if against and not ids and kind != "effort":
+            fact = _largest(id, command, subjects) if id in wanted else None
+            if fact is not None:
+                facts[id] = fact
+    if not ids and kind != "effort" and _turns_against(facts):
         wanted = tuple("M_min" if id == "M_max" else id for id in wanted)
+
     titles = {"P_peak": "Largest ram force"} if kind == "ram" else {}
     if "M_max" not in wanted:
         titles["M_min"] = _LABELS["flywheel"]["M_max"]
-    found: dict[str, Fact] = {}
-    for id in dict.fromkeys(one for one in wanted if one in known):
-        size, taken = abs(known[id].value), [0.0, *(abs(one.value) for one in found.values())]
-        if ids or (size not in taken and len(found) < _MOST_FACTS):
-            found[id] = known[id]._replace(title=titles.get(id, known[id].title))
-    return found
+    chosen: dict[str, Fact] = {}
+    sizes = {0.0}
+    for id in dict.fromkeys(wanted):
+        if id not in facts:
+            continue
+        # the most informative ones, each size once
+        size = abs(facts[id].value)
+        is_new = size not in sizes and len(chosen) < _MOST_FACTS
+        if ids or is_new:
+            chosen[id] = facts[id]._replace(title=titles.get(id, facts[id].title))
+            sizes.add(size)
+    return chosen
+
+
+def _turns_against(facts: Mapping[str, Fact]) -> bool:
+    """Return whether the torque is largest against the rotation, as that of a pump or a compressor."""
+    if "M_max" not in facts or "M_min" not in facts:
+        return False
+    return abs(facts["M_min"].value) > abs(facts["M_max"].value)
 
 
 def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Fact | None:
-    each: list[Fact] = []
+    """Return a key value of the part that decides, named; None where no part prints it."""
+    facts = []
     for subject in subjects:
-        quantity = subject.lists.key_values(command).get(id)
-        with suppress(KurbelError):
-            value = subject.answer(quantity) if quantity and subject.is_printed(quantity) else None
-            if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
-                degrees = value.degrees if isinstance(value, Extreme) else None
-                side = BEFORE if before_jumps(subject, [(quantity, value)]) else ""
-                each.append(
-                    Fact(_LABELS[command][id], number, quantity, subject.name, degrees, side=side)
-                )
-    if not each:
+        fact = _fact_of(id, command, subject)
+        if fact is not None:
+            facts.append(fact)
+    if not facts:
         return None
-    whole = [one for one in each if one.where == "whole machine"]
-    found = (min if id in _SMALLEST else max)(whole or each, key=lambda one: abs(one.value))
-    equal = [one.where for one in each if f"{one.value:.6g}" == f"{found.value:.6g}"]
-    return found._replace(where=together(equal) if len(equal) < len(each) else "")
+    of_whole = [fact for fact in facts if fact.where == "whole machine"]
+    decisive = min if id in _SMALLEST else max
+    largest = decisive(of_whole or facts, key=lambda fact: abs(fact.value))
+    equal = [fact.where for fact in facts if f"{fact.value:.6g}" == f"{largest.value:.6g}"]
+    return largest._replace(where=together(equal) if len(equal) < len(facts) else "")
+
+
+def _fact_of(id: str, command: str, subject: Subject) -> Fact | None:
+    """Return the key value of one part; None where it has none, or does not print it."""
+    quantity = subject.lists.key_values(command).get(id)
+    if quantity is None:
+        return None
+    try:
+        if not subject.is_printed(quantity):
+            return None
+        value = subject.answer(quantity)
+        is_before_a_jump = bool(before_jumps(subject, [(quantity, value)]))
+    except KurbelError:
+        return None
+    number = number_of(value)
+    if not isinstance(number, float) or not math.isfinite(number):
+        return None
+    degrees = value.degrees if isinstance(value, Extreme) else None
+    side = BEFORE if is_before_a_jump else ""
+    return Fact(_LABELS[command][id], number, quantity, subject.name, degrees, side=side)
 
 
 def tiles(facts: Iterable[Fact], system: str) -> Facts:
     """Return key values for display as tiles, each in its unit."""
-    found = []
+    in_units = []
     for fact in facts:
-        unit, kind = shown_unit(fact.quantity.kind, system, abs(fact.value)), fact.quantity.kind
-        found.append(
-            fact._replace(
-                value=float(convert(fact.value, kind, unit)), unit=fact.quantity.marked(unit)
-            )
-        )
-    return Facts(tuple(found))
+        kind = fact.quantity.kind
+        unit = shown_unit(kind, system, abs(fact.value))
+        value = float(convert(fact.value, kind, unit))
+        in_units.append(fact._replace(value=value, unit=fact.quantity.marked(unit)))
+    return Facts(tuple(in_units))
 
 
-def if_any(found: Callable[[], Iterable[Thing]]) -> list[Thing]:
+def results_if_any(results: Callable[[], Iterable[Thing]]) -> list[Thing]:
     """Return the results as a list, empty if the machine does not have them."""
     try:
-        return list(found())
+        return list(results())
     except KurbelError:
         return []
 
@@ -253,12 +279,12 @@ def first_page(
     yield from limit_verdicts(case, cases)
     if cases:
         rows: list[PlaceRow] = []
-        for one in cases:
-            rows.append(
-                ((name_of(one),), {id: found.value for id, found in facts_of(one, facts).items()})
-            )
-        declared = {id: one.quantity for id, one in facts.items()}
-        yield Places("cases", "Load cases", ("case",), declared, rows, headed=True).shown(system)
+        for load_case in cases:
+            of_case = facts_of(load_case, facts)
+            rows.append(((name_of(load_case),), {id: fact.value for id, fact in of_case.items()}))
+        declared = {id: fact.quantity for id, fact in facts.items()}
+        table = Places("cases", "Load cases", ("case",), declared, rows, headed=True)
+        yield table.shown(system)
     yield from (Notice(text, "warning") for text in warnings)
     if not warnings:
         yield Notice("No warnings.", "good")
@@ -275,44 +301,57 @@ def _facts_of_forces(case: Case, facts: Iterable[Fact]) -> Iterator[Fact]:
 
 def limit_verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[SectionItem]:
     """Yield limits and expectations with their bounds and verdicts, and why some cannot be compared."""
-    judged, rows, marks = compared_entries(case, cases), list[tuple[FactValue, ...]](), list[str]()
-    for equal in grouped(
-        (one for one in judged if one.bound), lambda one: (one.path, one.where, one.bound)
-    ):
-        # in several load cases all that fail, or the one that is nearest to its bound
-        nearest = (min if equal[0].bound.startswith("≥") else max)(
-            equal, key=lambda one: one.value or 0.0
-        )
-        for one in [one for one in equal if one.severity == "error"] or [nearest]:
-            bad, of = one.severity == "error", one.quantity
-            value, where = (
-                (one.value or 0.0, one.unit),
-                one.where + one.what.removeprefix(str(one.path[-1])),
-            )
-            symbol, text = (of.symbol, _CLAUSE.split(of.text)[0]) if of else ("", one.what)
-            rows.append((symbol, value, one.bound, "FAIL" if bad else "PASS", text, where))
-            marks.append("bad" if bad else "good")
+    entries = compared_entries(case, cases)
+    rows: list[tuple[FactValue, ...]] = []
+    marks = []
+    with_bound = [entry for entry in entries if entry.bound]
+    same_bound = grouped(with_bound, lambda entry: (entry.path, entry.where, entry.bound))
+    for group in same_bound:
+        for entry in _decisive(group):
+            fails = entry.severity == "error"
+            rows.append(_verdict_row(entry, "FAIL" if fails else "PASS"))
+            marks.append("bad" if fails else "good")
     if rows:
         # in this order: a narrow window shows the first columns
         heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"
         yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
-    yield from (Notice(str(one.error), "bad") for one in judged if one.error)
-    yield from (
-        Notice(f"{one.what}: {one.text}", "warning")
-        for one in judged
-        if not (one.bound or one.error)
-    )
+    for entry in entries:
+        if entry.error:
+            yield Notice(str(entry.error), "bad")
+    for entry in entries:
+        if not entry.bound and not entry.error:
+            yield Notice(f"{entry.what}: {entry.text}", "warning")
+
+
+def _decisive(entries: Sequence[CheckEntry]) -> list[CheckEntry]:
+    """Return of one bound in several load cases all that fail, or the one that is nearest to it."""
+    failing = [entry for entry in entries if entry.severity == "error"]
+    if failing:
+        return failing
+    nearest = min if entries[0].bound.startswith("≥") else max
+    return [nearest(entries, key=lambda entry: entry.value or 0.0)]
+
+
+def _verdict_row(entry: CheckEntry, verdict: str) -> tuple[FactValue, ...]:
+    """Return symbol, value, bound, verdict, first words of the sentence, and the part."""
+    value = (entry.value or 0.0, entry.unit)
+    where = entry.where + entry.what.removeprefix(str(entry.path[-1]))
+    if entry.quantity is None:
+        return "", value, entry.bound, verdict, entry.what, where
+    first_words = _CLAUSE.split(entry.quantity.text)[0]
+    return entry.quantity.symbol, value, entry.bound, verdict, first_words, where
 
 
 def firing_order(machine: Machine) -> Iterator[Grid]:
     """Yield the firing angles of an engine with several cylinders, and the intervals between ignitions."""
-    found, cycle = firings(machine), 360.0 * machine.revolutions
-    if len(machine.cylinders) < 2 or not found:
+    ignitions = firings(machine)
+    if len(machine.cylinders) < 2 or not ignitions:
         return
-    rows = tuple(
-        (machine.cylinders[number - 1].name, f"{angle:g}°", f"{after:g}°")
-        for (angle, number), after in zip(found, intervals([angle for angle, _ in found], cycle))
-    )
-    yield Grid(
-        "Firing order", ("Cylinder", "Fires at", "Interval to the next"), rows, numbers=(1, 2)
-    )
+    cycle = 360.0 * machine.revolutions
+    to_next = intervals([angle for angle, _ in ignitions], cycle)
+    rows = []
+    for (angle, number), interval in zip(ignitions, to_next):
+        name = machine.cylinders[number - 1].name
+        rows.append((name, f"{angle:g}°", f"{interval:g}°"))
+    heads = ("Cylinder", "Fires at", "Interval to the next")
+    yield Grid("Firing order", heads, tuple(rows), numbers=(1, 2))

@@ -18,8 +18,8 @@ from kurbel.page.summary import (
     facts_of,
     firing_order,
     first_page,
-    if_any,
     limit_verdicts,
+    results_if_any,
     subtitle_of,
 )
 from kurbel.pictures.picture import (
@@ -282,7 +282,7 @@ def _key_values(
 ) -> Iterator[Grid]:
     """Yield the key values of both machines, cylinder by cylinder, identical ones once."""
     each = (
-        [one for one in if_any(partial(subjects_of, case, command)) if one.results]
+        [one for one in results_if_any(partial(subjects_of, case, command)) if one.results]
         for case in cases
     )
     pairs = [*zip_longest(*each)]
@@ -299,7 +299,7 @@ def _key_values(
 
 def _numbers(subject: Subject | None, command: str) -> dict[Quantity, float]:
     """Return the key values of a subject in SI, without lists and residuals."""
-    found = if_any(partial(subject.key_values, command)) if subject else []
+    found = results_if_any(partial(subject.key_values, command)) if subject else []
     numbers = {quantity: number_of(value) for quantity, value in found if not quantity.residual}
     return {
         quantity: number for quantity, number in numbers.items() if isinstance(number, (int, float))

@@ -358,6 +358,8 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
     """
     name, cylinders = case.machine.name, [cylinder.drive.name for cylinder in case.cylinders]
     if options.cylinder:
+        if tuple(names) == ("throw-stress",):
+            cylinders += [throw.name for throw in case.stress.throws]
         options = options._replace(cylinder=cylinder_meant(options.cylinder, cylinders))
         if options.cylinder not in cylinders:
             there = f"there is no '{text_in_one_line(options.cylinder or '')}'; there are {', '.join(cylinders)}"
@@ -434,6 +436,12 @@ def _sources(
         )
     elif command == "torsion":
         yield Source(case.torsion, options.angles), ""
+    elif command == "stress":
+        throw = case.stress.worst
+        for other in case.stress.throws:
+            if options.cylinder in (other.name, *(forces.drive.name for forces in other.rods)):
+                throw = other
+        yield Source(throw, options.angles), "" if case.stress.only else throw.name
     elif command not in _OF_PARTS:
         having = [one.results for one in subjects_of(case, command) if one.results]
         yield Source(having[-1], options.angles), ""

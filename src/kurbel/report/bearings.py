@@ -7,11 +7,7 @@ from kurbel.notes.left_out import (
     bearing_left_out,
     bearings_left_out,
 )
-from kurbel.notes.warnings import (
-    as_far_as_solved,
-    bearing_warnings,
-    of_machine,
-)
+from kurbel.notes.warnings import as_far_as_solved, bearing_warnings, of_machine, rods_on_pin
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.bearings import Bearing
 from kurbel.tables.frame import Functions, Subject
@@ -62,7 +58,7 @@ def _bearing_notes(case: Case) -> Iterator[str]:
             "and 'crankshaft' as the throw of every cylinder."
         )
     if line and any(len(throw.cylinders) > 1 for throw in line.throws):
-        yield "Rods on one pin are side by side, each on an equal part of its length; all load the pin in its middle."
+        yield rods_on_pin(line.shaft.rod_spacing)
     if any(cylinder.masses and cylinder.masses.undivided for cylinder in machine.cylinders):
         yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
 

@@ -99,7 +99,7 @@ def _flywheel() -> "Functions":
 
 
 def _stress() -> "Functions":
-    """Print the forces on the bearings of a crankshaft with one throw, and the stresses in pin, webs and journals.
+    """Print the forces on the bearings of each throw of a crankshaft, and the stresses in pin, webs and journals.
 
     Stresses are listed for each place: in the dead centre under the full piston force, at the largest torque, and at
     the largest stress of the place over the whole cycle; combined after Bach (sigma_res) and after von Mises

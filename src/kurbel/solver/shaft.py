@@ -77,54 +77,90 @@ def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> 
 
 
 class FreeBody:
-    """One throw under the force on its pin and the weight of the flywheel.
+    """One throw under the forces of the rods on its pin and the weight of the flywheel, with the torque that enters it.
 
-    shaft: lengths in m; crank: r in m; pin: whole force on the pin in N; weight: of the flywheel in N, in one frame.
-    The torque T r in N m leaves the shaft at the flywheel; end A has no torque.
+    shaft: lengths in m; crank: r in m; rods: force of each in N, in one frame, from bearing A toward B, at the places
+    of `Crankshaft.rod_places`; weight: of the flywheel in N; torque_A: M_A in N m in journal A, from the throws before
+    this one, None where there is none. The torque leaves at bearing B.
 
-    A, B: forces on the bearings in N, A = (F b − G f)/(b − u_A), u_A = −a, overhung a; G: A_p = P b/(a + b).
+    pin: sum of the rods' forces; A, B: forces on the bearings in N,
+
+        A = (Σ F_k (b − u_k) − G f)/(b − u_A)        u_A = −a, overhung a; G: A_p = P b/(a + b)
+
     before_pin: shear force in N in the shaft before the pin, the force on bearing A; 0 for an overhung crank.
     along_web: force along the web toward B, compression positive: D − A_D, that is B_D less the flywheel weight;
-    D in the web of an overhung crank.
+    D in the web of an overhung crank. torque_pin, torque_B: M_p = M_A + A_T r in the pin, M_B = M_A + T r behind it; of
+    the part before a cut through the pin the bearing's force −A_T acts r inward of the pin's axis.
     """
 
-    def __init__(self, shaft: Crankshaft, crank: Number, pin: Force, weight: Force) -> None:
-        self.shaft, self.crank, self.pin, self.weight = shaft, crank, pin, weight
+    def __init__(
+        self,
+        shaft: Crankshaft,
+        crank: Number,
+        rods: Sequence[Force],
+        weight: Force,
+        torque_A: Number | None = None,
+    ) -> None:
+        self.shaft, self.crank, self.weight, self.torque_A = shaft, crank, weight, torque_A
+        self.rods = list(zip(rods, shaft.rod_places(len(rods))))
+        self.pin = sum(rods[1:], start=rods[0])
         b, f, span = shaft.b, shaft.flywheel_position, shaft.span
-        self.A = (pin * b - weight * f) / span
-        self.B = (weight * (span + f) - pin * shaft.place_A) / span
+        of_A = [force * (b - u) for force, u in self.rods]
+        of_B = [force * (shaft.place_A - u) for force, u in self.rods]
+        self.A = (sum(of_A[1:], start=of_A[0]) - weight * f) / span
+        self.B = (weight * (span + f) - sum(of_B[1:], start=of_B[0])) / span
         self.before_pin = 0 * self.A if shaft.overhung else self.A
-        self.along_web, self.torque = (pin - self.before_pin).real, pin.imag * crank
+        self.along_web = (self.pin - self.before_pin).real
+        entering: Number = 0.0 if torque_A is None else torque_A
+        self.torque_pin = entering + self.before_pin.imag * crank
+        self.torque_B = entering + self.pin.imag * crank
 
     def moments_at(self, u: Number) -> Force:
         """Return the bending moments in N m at the section u, of the forces before it: D and T of each times its arm.
 
-        A (u − u_A) from bearing A on, less F u from the pin on; valid up to B, or to a flywheel before B. The opposite
-        sign of G, P e − A_p (a + e).
+        A ⟨u − u_A⟩ − Σ F_k ⟨u − u_k⟩ with ⟨x⟩ = max(x, 0), valid up to B, or to a flywheel before B. The opposite sign
+        of G, P e − A_p (a + e).
         """
-        from_A, from_pin = (where(arm > 0, arm, 0.0) for arm in (u - self.shaft.place_A, u))
-        return self.A * from_A - self.pin * from_pin
+        moments = self.A * _at_least_0(u - self.shaft.place_A)
+        for force, u_rod in self.rods:
+            moments = moments - force * _at_least_0(u - u_rod)
+        return moments
 
     def equilibrium_residual(self, torque: Array) -> Array:
         """Return the relative residual of the equilibrium of forces and of moments, the larger of both.
 
-        torque: M on the shaft in N m, shaped as the forces (…), from the work of the piston force and not from T.
-        Moments are about the middle of the pin, of the forces where they act; the formulas above are not used.
+        torque: M_B − M_A in N m, shaped as the forces (…), from the work of the piston forces and not from T. Moments
+        are about the middle of the pin, of the forces where they act; the formulas above are not used.
         """
-        shaft, forces = self.shaft, [self.pin, -self.A, -self.B, self.weight + 0 * self.A]
-        arms = (0.0, shaft.place_A, shaft.b, shaft.b + shaft.flywheel_position)
+        shaft = self.shaft
+        forces = [*(force for force, _ in self.rods), -self.A, -self.B, self.weight + 0 * self.A]
+        arms = [
+            *(u for _, u in self.rods),
+            shaft.place_A,
+            shaft.b,
+            shaft.b + shaft.flywheel_position,
+        ]
         bends = [force * arm for force, arm in zip(forces, arms)]
         twists = [
             torque,
-            *(force.imag * self.crank for force in forces[1:]),
-        ]  # the pin's has no arm
-        sizes = [sum(np.abs(term) for term in terms) for terms in (forces, [*bends, *twists])]
-        left = np.abs(sum(forces)), np.hypot(np.abs(sum(bends)), sum(twists))
-        shares = [
-            np.where(size > 0, one / np.where(size > 0, size, 1.0), 0.0)
-            for one, size in zip(left, sizes)
-        ]
-        return np.maximum(*shares)
+            *(force.imag * self.crank for force in forces[len(self.rods) :]),
+        ]  # the pin's have no arm
+        size_of_forces = sum(np.abs(force) for force in forces)
+        size_of_moments = sum(np.abs(moment) for moment in [*bends, *twists])
+        left_of_forces = np.abs(sum(forces))
+        left_of_moments = np.hypot(np.abs(sum(bends)), sum(twists))
+        return np.maximum(
+            _share(left_of_forces, size_of_forces), _share(left_of_moments, size_of_moments)
+        )
+
+
+def _at_least_0(arm: Number) -> Number:
+    return where(arm > 0, arm, 0.0)
+
+
+def _share(left: Array, size: Array) -> Array:
+    """Return what is left over the size of the terms; 0 where there is none."""
+    return np.where(size > 0, left / np.where(size > 0, size, 1.0), 0.0)
 
 
 # the throws along a shaft
@@ -206,20 +242,27 @@ class SupportedShaft:
         """Return the throw on whose pin a cylinder is, by its number from 0."""
         return next(throw for throw in self.throws if cylinder in throw.cylinders)
 
-    def carried(
-        self, throw: Throw, pin: Force, own: Cylinder, angle: CrankAngle
+    def reactions(
+        self, throw: Throw, rods: Sequence[Force], cylinder: Cylinder, angle: CrankAngle
     ) -> tuple[Force, Force]:
         """Return the forces in N of a throw on its bearings A and B, in its own frame.
 
-        pin: force on its pin in N; own: a cylinder on it, and its own crank angle, for the weight of the flywheel.
+        rods: forces on its pin in N, as its cylinders follow one another; cylinder: one of them, with its own crank
+        angle, for the weight of the flywheel.
         """
-        weight = flywheel_weight(self.machine, own, angle) if throw.flywheel else 0.0
-        body = FreeBody(self.shaft, own.mechanism.crank, pin, weight)
+        weight = flywheel_weight(self.machine, cylinder, angle) if throw.flywheel else 0.0
+        body = FreeBody(self.shaft, cylinder.mechanism.crank, rods, weight)
         omega = 0.0 if self.machine.speed is None else 2 * math.pi * self.machine.speed
         # what turns pulls outward, against D
         return body.A - np.conj(throw.at_A) * omega * omega, body.B - np.conj(
             throw.at_B
         ) * omega * omega
+
+
+def strength_obstacle(machine: Machine) -> str:
+    """Return why the strength of the crankshaft of a machine cannot be examined, or an empty text."""
+    several = len(machine.cylinders) > 1
+    return machine.strength_obstacle or (shaft_obstacle(machine) if several else "")
 
 
 def shaft_obstacle(machine: Machine) -> str:

@@ -316,8 +316,11 @@ class State(Chambers):
             names = [cylinder.name for cylinder in drive.machine.cylinders]
             throw = friction.line.throw_of(names.index(drive.name))
             count = len(throw.cylinders)
-            carried = friction.line.carried(throw, pin.complex * count, drive.cylinder, self.angle)
-            bearings = sum(np.abs(force) for force in carried) / count
+            # as though all rods on the pin loaded it alike, in its middle
+            reactions = friction.line.reactions(
+                throw, [pin.complex * count], drive.cylinder, self.angle
+            )
+            bearings = sum(np.abs(force) for force in reactions) / count
         at_crosshead: Number = 0.0
         if self.rod_angle is not None:  # the rod turns by −dψ, which friction opposes
             at_crosshead = np.hypot(*on_crosshead_pin(self.without_pin_friction)) * (

@@ -178,6 +178,10 @@ class Frame(NamedTuple):
     names: str = ""
 
 
+_PARTS = {"bearings": "bearings", "stress": "throws"}
+"""What the parts of a report are called where they are no cylinders."""
+
+
 @np.errstate(all="ignore")
 def report_on(
     frame: Frame,
@@ -236,7 +240,7 @@ def report_on(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
-        "bearings" if frame.command == "bearings" else "cylinders",
+        _PARTS.get(frame.command, "cylinders"),
         whole=parts.pop() if having and having[-1][0].whole else None,
         parts=tuple(parts),
         notes=(*notes, *added) if frame.prose else (),

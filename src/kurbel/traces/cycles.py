@@ -42,18 +42,18 @@ class Recording:
     def __init__(
         self, angles: Array, values: Array, place: Callable[[int], Fault], most_turns: int = 2
     ) -> None:
-        self.angles, self.values, self.rows = angles, values, np.arange(len(angles))
+        self.angles = angles
+        self.values = values
+        self.rows = np.arange(len(angles))
         self.most_turns = most_turns
-        self._place = place
         self.notes: list[str] = []
+        self._location_of_row = place
 
     def keep(self, which: slice | Indices) -> None:
         """Keep only these samples, in the order of their indices."""
-        self.angles, self.values, self.rows = (
-            self.angles[which],
-            self.values[:, which],
-            self.rows[which],
-        )
+        self.angles = self.angles[which]
+        self.values = self.values[:, which]
+        self.rows = self.rows[which]
 
     @property
     def span(self) -> float:
@@ -67,20 +67,17 @@ class Recording:
 
     def refuse_hole(self, index: int, low: float, high: float, advice: str = "") -> NoReturn:
         """Raise RuleError for a stretch without samples, which begins at this one."""
-        several = self.most_turns > 2
-        whole = (
-            "a diagram covers whole turns of 360 deg"
-            if several
-            else "a trace covers a whole cycle of 360 or 720 deg"
-        )
-        self.refuse(index, f"no samples from {low:.10g} to {high:.10g} deg; {whole}{advice}")
+        rule = "a trace covers a whole cycle of 360 or 720 deg"
+        if self.most_turns > 2:
+            rule = "a diagram covers whole turns of 360 deg"
+        self.refuse(index, f"no samples from {low:.10g} to {high:.10g} deg; {rule}{advice}")
 
     def refuse(self, index: int, message: str, fault: type[Fault] = Fault) -> NoReturn:
         """Raise RuleError with what is wrong with a sample."""
-        place = self._place(int(self.rows[index]))
-        raise RuleError(
-            fault(place.path, f"{place.message}: {message}" if place.message else message)
-        )
+        location = self._location_of_row(int(self.rows[index]))
+        if location.message:
+            message = f"{location.message}: {message}"
+        raise RuleError(fault(location.path, message))
 
 
 def samples_of_file(
@@ -99,11 +96,14 @@ def samples_of_file(
     angles, figures, line = read_table(file, layout)
     with np.errstate(over="ignore"):  # what is beyond all numbers is refused with its line
         values = base(figures)
+
+    def location_of_row(row: int) -> Fault:
+        return Fault(("file",), line(row))
+
     try:
-        return whole_cycles(
-            angles, values, lambda row: Fault(("file",), line(row)), kind, against, most_turns
-        )
+        return whole_cycles(angles, values, location_of_row, kind, against, most_turns)
     except RuleError as error:
+        # where angles come from times, a wrong speed or unit may be the cause
         (fault,) = error.faults
         if layout.recorded_speed is None or "angle_unit" in fault.message:
             raise
@@ -127,7 +127,8 @@ def whole_cycles(
     recording = Recording(-angles if against else angles, values, place, most_turns)
     _refuse_no_numbers(recording, kind)
     steps = np.diff(recording.angles)
-    if against and (steps < 0).sum() > (steps > 0).sum():  # in the order of the angle, not of time
+    falls_mostly = (steps < 0).sum() > (steps > 0).sum()
+    if against and falls_mostly:  # in the order of the angle, not of time
         recording.keep(slice(None, None, -1))
     _put_in_order(recording)
     _lay_over_one_lap(recording)
@@ -139,16 +140,17 @@ def whole_cycles(
 
 
 def _refuse_no_numbers(recording: Recording, kind: str) -> None:
-    for what, given in (("angle", recording.angles[np.newaxis]), (kind, recording.values)):
-        sizes = np.abs(given).max(axis=0)
+    """Raise RuleError for an angle or a value that is no number, or too large for one."""
+    for what, rows in (("angle", recording.angles[np.newaxis]), (kind, recording.values)):
+        sizes = np.abs(rows).max(axis=0)
         largest = int(np.argmax(sizes))  # nan counts as the largest
         size = float(sizes[largest])
         if not math.isfinite(size):
             fault = NotANumber if math.isnan(size) else Fault
-            recording.refuse(
-                largest, f"the {what} is {size}, not a number; leave such rows out", fault
-            )
-        if "large" in (beyond := out_of_size(size, what)):
+            message = f"the {what} is {size}, not a number; leave such rows out"
+            recording.refuse(largest, message, fault)
+        beyond = out_of_size(size, what)
+        if "large" in beyond:
             recording.refuse(largest, f"the {what} {size:g} {beyond}")
 
 
@@ -157,35 +159,45 @@ def _put_in_order(recording: Recording) -> None:
 
     Raises RuleError where the angle goes back by less than half a turn: there no turn ends.
     """
-    steps = np.diff(recording.angles)
-    falls = np.flatnonzero(steps < 0)
-    most = 360.0 * recording.most_turns
-    if (
-        len(falls) == 1
-        and 180 < -steps[falls[0]] <= most
-        and recording.angles[-1] <= recording.angles[0]
-    ):
-        first = int(falls[0]) + 1
-        recording.keep(np.roll(np.arange(len(recording.rows)), -first))
-        recording.notes.append(
-            f"the angle begins anew at {recording.angles[0]:.10g} deg; the samples from there on come first"
-        )
-        steps = np.diff(recording.angles)
-    angles, back = recording.angles, np.flatnonzero((steps < 0) & (steps >= -180))
-    if len(back) > 1 and len(back) >= 0.9 * len(steps):
+    _begin_at_smallest_angle(recording)
+    angles = recording.angles
+    steps = np.diff(angles)
+    backward = np.flatnonzero((steps < 0) & (steps >= -180))
+    runs_backward = len(backward) > 1 and len(backward) >= 0.9 * len(steps)
+    if runs_backward:
         message = (
-            f"the angle falls from {angles[0]:.10g} to {angles[-1]:.10g} deg: the rows run backward; put them in "
-            "order of the angle, or write 'angle_sense: against' if the encoder counts against the rotation"
+            f"the angle falls from {angles[0]:.10g} to {angles[-1]:.10g} deg: the rows run "
+            "backward; put them in order of the angle, or write 'angle_sense: against' if the "
+            "encoder counts against the rotation"
         )
-        recording.refuse(int(back[0]) + 1, message)
-    if len(back):
-        i = int(back[0]) + 1
-        recording.refuse(
-            i,
-            f"{angles[i]:.10g} deg after {angles[i - 1]:.10g} deg; put the points in order of the angle",
+        recording.refuse(int(backward[0]) + 1, message)
+    if len(backward):
+        i = int(backward[0]) + 1
+        message = (
+            f"{angles[i]:.10g} deg after {angles[i - 1]:.10g} deg; "
+            "put the points in order of the angle"
         )
+        recording.refuse(i, message)
     if not np.ptp(angles):
         recording.refuse(0, "a trace needs samples at two angles or more")
+
+
+def _begin_at_smallest_angle(recording: Recording) -> None:
+    """Put the samples after the only fall of the angle first, where it ends one cycle."""
+    angles = recording.angles
+    steps = np.diff(angles)
+    falls = np.flatnonzero(steps < 0)
+    if len(falls) != 1 or angles[-1] > angles[0]:
+        return
+    fall = -steps[falls[0]]
+    if not 180 < fall <= 360.0 * recording.most_turns:
+        return
+    first = int(falls[0]) + 1
+    recording.keep(np.roll(np.arange(len(recording.rows)), -first))
+    recording.notes.append(
+        f"the angle begins anew at {recording.angles[0]:.10g} deg; "
+        "the samples from there on come first"
+    )
 
 
 # many laps, one below the other
@@ -209,49 +221,61 @@ def _lay_over_one_lap(recording: Recording) -> None:
     if not begins_anew and recording.period:
         return
     lap = _count_on(recording) if begins_anew else 360.0
-    angles, step = recording.angles, usual_step(recording.angles)
-    laps = int((angles[-1] - angles[0] + 1.5 * min(step, lap / 20)) // lap)
-    bounds = np.searchsorted(
-        angles, angles[0] + lap * np.arange(laps + 1) - min(1e-6 * lap, step / 2)
-    )
-    if laps < 2 or (np.diff(bounds) < 2).any():
+
+    # where the whole laps begin and the last one ends
+    angles = recording.angles
+    step = usual_step(angles)
+    span = angles[-1] - angles[0]
+    laps = int((span + 1.5 * min(step, lap / 20)) // lap)
+    starts = angles[0] + lap * np.arange(laps + 1)
+    bounds = np.searchsorted(angles, starts - min(1e-6 * lap, step / 2))
+    counts = np.diff(bounds)
+    if laps < 2 or (counts < 2).any():
         return
     _refuse_large_holes(recording, angles)
 
-    count, end = int(bounds[1]), int(bounds[-1])
+    # laps at equal angles keep these, others get those of all laps
+    count = int(bounds[1])
+    end = int(bounds[-1])
     offsets = lap * np.arange(laps)[:, np.newaxis]
     from_samples: Indices = np.arange(count)
     shared: Array = angles[:count]
-    even = (np.diff(bounds) == count).all()
-    if (
-        even
-        and np.abs(angles[:end].reshape(laps, count) - shared - offsets).max()
-        <= _SAME_ANGLE * lap / count
-    ):
-        each = recording.values[:, :end].reshape(-1, count)
+    has_equal_angles = False
+    if (counts == count).all():
+        differences = angles[:end].reshape(laps, count) - shared - offsets
+        has_equal_angles = bool(np.abs(differences).max() <= _SAME_ANGLE * lap / count)
+    if has_equal_angles:
+        values = recording.values[:, :end].reshape(-1, count)
     else:
         shared, from_samples = _angles_of_all(angles[:end], bounds, lap)
-        each = np.concatenate(
-            [np.interp(shared + offsets, angles, column) for column in recording.values]
-        )
-    swing = each - each.mean()
-    if (
-        not begins_anew
-        and len(each) > 2
-        and (swing[2:] * swing[:-2]).mean() < _LEAST_ALIKE * (swing**2).mean()
-    ):
-        message = (
-            f"the angle counts on over {len(each)} turns that are not alike; if it numbers samples, write how far "
-            f"apart they are, such as 'angle_step: {720 / len(angles):.4g} deg' for one cycle of 720 deg"
-        )
-        recording.refuse(0, message)
+        columns = [np.interp(shared + offsets, angles, column) for column in recording.values]
+        values = np.concatenate(columns)
+
+    if not begins_anew:
+        _refuse_unlike_laps(recording, values)
     if len(angles) - end > _REST * count:
         recording.notes.append(
             f"the {len(angles) - end} samples after lap {laps} of {lap:g} deg are left out"
         )
     recording.keep(from_samples)
     recording.angles = shared
-    recording.values = each
+    recording.values = values
+
+
+def _refuse_unlike_laps(recording: Recording, values: Array) -> None:
+    """Raise RuleError where an angle counts on over laps (m, n) that are not alike, each and the next but one."""
+    if len(values) <= 2:
+        return
+    swing = values - values.mean()
+    is_alike = not (swing[2:] * swing[:-2]).mean() < _LEAST_ALIKE * (swing**2).mean()
+    if is_alike:
+        return
+    message = (
+        f"the angle counts on over {len(values)} turns that are not alike; if it numbers samples, "
+        f"write how far apart they are, such as 'angle_step: {720 / len(recording.angles):.4g} deg' "
+        "for one cycle of 720 deg"
+    )
+    recording.refuse(0, message)
 
 
 def _angles_of_all(angles: Array, bounds: Indices, lap: float) -> tuple[Array, Indices]:
@@ -276,17 +300,17 @@ def _count_on(recording: Recording) -> float:
 
     A closing sample gives way to the first of the next lap. Raises RuleError for more than two turns.
     """
-    falls = np.diff(recording.angles) < 0
+    is_fall = np.diff(recording.angles) < 0
     lap = recording.period
     if not lap:
-        turn = "a turn has 360, a four-stroke cycle 720 deg: other units?"
-        recording.refuse(
-            int(np.argmax(falls)) + 1,
-            f"the angle begins anew after {recording.span:.10g} deg; {turn}",
+        message = (
+            f"the angle begins anew after {recording.span:.10g} deg; "
+            "a turn has 360, a four-stroke cycle 720 deg: other units?"
         )
-    recording.angles = recording.angles + lap * np.append(0, np.cumsum(falls))
-    closing = falls & (np.diff(recording.angles) <= 1e-9 * lap)
-    recording.keep(np.append(~closing, True))
+        recording.refuse(int(np.argmax(is_fall)) + 1, message)
+    recording.angles = recording.angles + lap * np.append(0, np.cumsum(is_fall))
+    is_closing = is_fall & (np.diff(recording.angles) <= 1e-9 * lap)
+    recording.keep(np.append(~is_closing, True))
     return lap
 
 
@@ -303,68 +327,80 @@ _WIDE = 3.0
 def _leave_out_twins(recording: Recording) -> None:
     """Leave out duplicate samples; raises RuleError for three at one angle."""
     angles = recording.angles
-    thrice = np.flatnonzero(angles[2:] == angles[:-2])
-    if len(thrice):
-        rounded = "; write 'angle_step' if the angles are only rounded" if len(thrice) > 1 else ""
-        i = int(thrice[0]) + 2
-        recording.refuse(i, f"three points at {angles[i]:.10g} deg; a jump has two{rounded}")
-    twins = np.diff(angles) == 0
-    same = twins & (np.diff(recording.values) == 0).all(axis=0)
-    if same.any() and not np.count_nonzero(twins) >= _ROUNDED * len(angles) > 2:
-        recording.keep(np.append(True, ~same))
-        count = np.count_nonzero(same)
-        recording.notes.append(
-            f"{count} samples given twice count once"
-            if count > 1
-            else "1 sample given twice counts once"
-        )
+    triples = np.flatnonzero(angles[2:] == angles[:-2])
+    if len(triples):
+        advice = "; write 'angle_step' if the angles are only rounded" if len(triples) > 1 else ""
+        i = int(triples[0]) + 2
+        recording.refuse(i, f"three points at {angles[i]:.10g} deg; a jump has two{advice}")
+
+    # of two samples with the same angle and values the second; rounded angles keep theirs
+    is_twin = np.diff(angles) == 0
+    is_duplicate = is_twin & (np.diff(recording.values) == 0).all(axis=0)
+    are_rounded = np.count_nonzero(is_twin) >= _ROUNDED * len(angles) > 2
+    if are_rounded or not is_duplicate.any():
+        return
+    recording.keep(np.append(True, ~is_duplicate))
+    count = np.count_nonzero(is_duplicate)
+    note = "1 sample given twice counts once"
+    if count > 1:
+        note = f"{count} samples given twice count once"
+    recording.notes.append(note)
 
 
 def _closed(recording: Recording) -> Laps:
     """Close the cycle with the first sample if only the last one is missing; raises RuleError for large gaps."""
-    angles, values = recording.angles, recording.values
+    angles = recording.angles
+    values = recording.values
     span = recording.span
     period = recording.period
     if not period:
         recording.refuse(-1, f"the samples run over {span:g} deg; cut whole cycles out")
     if len(angles) > MOST_POINTS:
-        recording.refuse(
-            MOST_POINTS, f"one cycle has more than {MOST_POINTS} samples; thin them out{LIMITS}"
-        )
+        message = f"one cycle has more than {MOST_POINTS} samples; thin them out{LIMITS}"
+        recording.refuse(MOST_POINTS, message)
+
+    # more is missing than the closing sample
     end = float(angles[0]) + period
     missing = end - float(angles[-1])
     if missing > 1.5 * usual_step(angles):
-        other = (
-            "; are these times? Then write 'angle_unit: s' and 'recorded_speed: 1500 rpm', say"
-            if span < 10
-            else ""
-        )
-        if min(abs(span - 2 * math.pi), abs(span / 2 - 2 * math.pi)) < 0.2:
-            other = "; are these radians? Then write 'angle_unit: rad'"
-        recording.refuse_hole(-1, angles[-1], end, other)
+        recording.refuse_hole(-1, angles[-1], end, _unit_advice(span))
+
     completed = missing > 1e-9 * period
     if completed:
         values = np.append(values, values[:, :1], axis=1)
     angles = np.append(angles if completed else angles[:-1], end)
     _refuse_large_holes(recording, angles)
-    wide = np.flatnonzero(np.diff(angles) > _WIDE * usual_step(angles))[:5].tolist()
-    holes = (
-        f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; a straight line joins them"
-        for i in wide
-    )
-    return Laps(angles, values, (*recording.notes, *holes), completed)
+
+    # smaller holes are reported
+    notes = list(recording.notes)
+    wide = np.flatnonzero(np.diff(angles) > _WIDE * usual_step(angles))
+    for i in wide[:5].tolist():
+        notes.append(
+            f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; "
+            "a straight line joins them"
+        )
+    return Laps(angles, values, tuple(notes), completed)
+
+
+def _unit_advice(span: float) -> str:
+    """Return which unit angles over so many degrees may really have, or ''."""
+    radians_missed = min(abs(span - 2 * math.pi), abs(span / 2 - 2 * math.pi))
+    if radians_missed < 0.2:
+        return "; are these radians? Then write 'angle_unit: rad'"
+    if span < 10:
+        return "; are these times? Then write 'angle_unit: s' and 'recorded_speed: 1500 rpm', say"
+    return ""
 
 
 def _refuse_large_holes(recording: Recording, angles: Array) -> None:
     """Raise RuleError where a stretch without samples is wide, in degrees and in median steps."""
     steps = np.diff(angles)
-    given = np.sort(steps[steps > 0])
-    median = float(given[len(given) // 2])
-    wide = np.flatnonzero(
-        steps > min(max(degrees, times * median) for degrees, times in _LARGE_HOLES)
-    )
-    if len(wide):
-        i = int(wide[0])
+    rising = np.sort(steps[steps > 0])
+    median = float(rising[len(rising) // 2])
+    limit = min(max(degrees, times * median) for degrees, times in _LARGE_HOLES)
+    large = np.flatnonzero(steps > limit)
+    if len(large):
+        i = int(large[0])
         recording.refuse_hole(i, angles[i], angles[i + 1])
 
 

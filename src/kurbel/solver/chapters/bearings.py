@@ -37,6 +37,7 @@ from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
+from kurbel.solver.throw_loads import pin_load, real_parts, resampled, state_at
 from kurbel.solver.vector import Force
 
 HALF_CONTACT = 60.0
@@ -59,19 +60,6 @@ Size = tuple[float | None, float | None]
 """Diameter and length in m; None where they are not given."""
 Frames = dict[str, ComplexArray]
 """A load in N in each of its frames."""
-
-
-def state_at(forces: CylinderForces, degrees: Array, within: Array) -> State:
-    """Return the state of a cylinder at angles (n,) of crank 1, on the sides of jumps that hold `within`."""
-    late = position(forces)
-    return State.at(forces.drive, degrees - late, within - late)
-
-
-def carried(pieces: Pieces, forces: CylinderForces, *values: Force) -> ComplexArray:
-    """Return quantities of a cylinder, sampled on its own pieces, at the nodes of common pieces, (q, nodes, pieces)."""
-    source = forces.pieces
-    parts = pieces.carried(_parts(values, source.degrees.shape), source, position(forces))
-    return parts[::2] + 1j * parts[1::2]
 
 
 class BearingColumns(AtAngles):
@@ -246,14 +234,14 @@ class RodPin(Bearing):
 
     def _samples(self) -> Sequence[ComplexArray]:
         frames = self._seen(self._own.samples, self._own.pieces.of(self._bank))
-        return [*carried(self._common, self._own, frames[self.journal], frames[self.shell])]
+        return [*resampled(self._common, self._own, frames[self.journal], frames[self.shell])]
 
     def turning(self) -> tuple[Extreme, Number]:
         """The rod turns on the crank pin with 1 + dψ/dφ, on the crosshead pin with dψ/dφ; see `Bearing`."""
         state, pieces = self._own.samples, self._common
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
-        rate = carried(pieces, self._own, 1 + slope if self._pin == "crank_pin" else slope).real
+        rate = resampled(pieces, self._own, 1 + slope if self._pin == "crank_pin" else slope).real
         fastest = pieces.extremes(rate).each(self._result)[0].peak
         return fastest, self._result(pieces.mean(np.abs(rate[0])))
 
@@ -298,21 +286,20 @@ class MainBearing(Bearing):
         force = np.zeros(degrees.shape, complex)
         for throw in line.throws:
             if self._number in (throw.A, throw.B):
-                own, pin = (
+                cylinder, rods = (
                     line.machine.cylinders[throw.cylinders[0]],
-                    sum(pins[index] for index in throw.cylinders),
+                    [pins[index] for index in throw.cylinders],
                 )
                 # whole turns are taken off, which is exact: next to a large position an angle would lose its digits
-                angle = CrankAngle.of(degrees - np.fmod(own.crank_position, 360.0))
-                on_bearing = line.carried(throw, pin, own, angle)[
-                    0 if self._number == throw.A else 1
-                ]
+                angle = CrankAngle.of(degrees - np.fmod(cylinder.crank_position, 360.0))
+                on_A, on_B = line.reactions(throw, rods, cylinder, angle)
+                on_bearing = on_A if self._number == throw.A else on_B
                 force -= np.conj(on_bearing) * unit_vector(throw.angle)
         return force
 
     def _frames(self, degrees: Array, within: Array) -> Frames:
         pins = {
-            number: _pin_load(state_at(own, degrees, within))
+            number: pin_load(state_at(own, degrees, within))
             for number, own in self._members.items()
         }
         throw = self._force(self._line, pins, degrees)
@@ -323,7 +310,7 @@ class MainBearing(Bearing):
         pieces, pins = self._common, {}
         for number, own in self._members.items():
             state = own.samples if rubbed else own.samples.without_pin_friction
-            (pins[number],) = carried(pieces, own, _pin_load(state))
+            (pins[number],) = resampled(pieces, own, pin_load(state))
         line = (
             self._line
             if self.count is None
@@ -347,17 +334,6 @@ class MainBearing(Bearing):
         return self._result(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
-def _pin_load(state: State) -> Force:
-    return on_pin(state).complex if state.drive.has_force else 0j
-
-
-def _parts(loads: Sequence[Force], shape: tuple[int, ...]) -> Array:
-    """Return real and imaginary part of every load, (2 q, nodes, pieces)."""
-    return np.stack(
-        [np.broadcast_to(part, shape) for load in loads for part in (np.real(load), np.imag(load))]
-    )
-
-
 def with_magnitude(
     pieces: Pieces, loads: Sequence[ComplexArray]
 ) -> tuple[Pieces, Array, ComplexArray]:
@@ -365,7 +341,7 @@ def with_magnitude(
 
     loads: one load as it is seen in several frames, each (nodes, pieces).
     """
-    parts = _parts(loads, pieces.degrees.shape)
+    parts = real_parts(loads, pieces.degrees.shape)
     largest = pieces.largest(np.abs(loads[0]))
     fine, load, parts = resolved(
         pieces,

@@ -1,29 +1,33 @@
-"""Strength of a crankshaft with one throw, between two bearings or overhung: stresses over the whole cycle (G).
+"""Strength of a crankshaft, throw by throw, between two bearings or overhung: stresses over the whole cycle (G).
 
 Stresses are looked at in these places, part by part:
 
-    pin        middle          bent by A on the lever a, twisted by A_T r (G)
-               at web A, B     bent by A, and by A and the force on the pin; twisted by A_T r as all of the pin
+    pin        middle          bent by A on the lever a, twisted by M_p = M_A + A_T r (G, whose M_A is 0)
+               rod 1, rod 2    the same under each rod, where several are on the pin
+               at web A, B     bent by A, and by A and the forces on the pin; twisted by M_p as all of the pin
     web        wide face       compressed and bent in the plane of the throw, twisted: decisive for the shape (G)
                narrow face     compressed and bent out of that plane, twisted less
                corner          compressed and bent both ways, not twisted
-    journal A  at web          bent by A on the lever up to web A
-    journal B  at web          bent by A and the pin, twisted by T r; the shaft as far as B counts as journal
+    journal A  at web          bent by A on the lever up to web A, twisted by M_A, what the throws before it deliver
+    journal B  at web          bent by A and the pin, twisted by M_B; the shaft as far as B counts as journal
                at flywheel     the same, where the flywheel is before B
-               in bearing      bent by the flywheel overhung beyond B, twisted by T r
+               in bearing      bent by the flywheel overhung beyond B, twisted by M_B
 
-Along the pin and along each journal the moments are straight lines from load to load, under the same torsion: their
-vector sum is largest at a load or at an end, so that no section between these places is strained more. The force on the
-pin acts in its middle, the forces of the bearings in theirs.
+The flywheel is behind the last throw; of the others journal B is examined at the web alone. Along the pin and along
+each journal the moments are straight lines from load to load, under the same torsion: their vector sum is largest at a
+load or at an end, so that no section between these places is strained more. The forces of the bearings act in their
+middles.
 
 An overhung crank has a pin clamped at its only end, in web A, which is loaded as a web B with nothing before the pin;
 journal A is bent by F and twisted by T r, at the web and in its bearing, and the shaft beyond counts as journal B.
+Where cranks are at both ends of the shaft, the part between the bearings is bent by both.
 
 A web is bent out of the plane of the throw most at one end of its arm, at the axis of the pin or at that of the shaft.
 """
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
@@ -32,19 +36,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Number
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import taken
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import every, magnitude, some, where
-from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
-from kurbel.numerics.pieces import Pieces, highest, resolved
+from kurbel.numerics.extreme import Extreme, chosen, largest, smallest
+from kurbel.numerics.pieces import Pieces, common, highest, resolved
 from kurbel.quantity import Heading, ValuesById, value, values_for
-from kurbel.solver.figures import AtAngles, Results
+from kurbel.solver.effort import position
+from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import FreeBody, flywheel_weight
-from kurbel.solver.state import State, on_pin
+from kurbel.solver.shaft import FreeBody, SupportedShaft, flywheel_weight, strength_obstacle
+from kurbel.solver.state import State
+from kurbel.solver.throw_loads import pin_load, resampled, state_at
 from kurbel.solver.vector import Force
 
 PARTS = {
@@ -92,56 +98,94 @@ class Place(NamedTuple):
         """Equivalent stress √(σ² + 3 τ²) in Pa after von Mises."""
         return np.hypot(self.normal, 0.0 if self.torsion is None else math.sqrt(3) * self.torsion)
 
-    def one_of(self, number: int, degrees: float) -> Place:
-        """Return the place at a crank angle in one of several states."""
-        own: dict[str, Any] = {
-            name: float(each[number]) for name, each in self._asdict().items() if np.ndim(each)
+    def of_state(self, number: int, degrees: float) -> Place:
+        """Return the place in one of several states, whose forces act at a crank angle."""
+        stresses = self._asdict()
+        in_state: dict[str, Any] = {
+            name: float(stresses[name][number]) for name in stresses if np.ndim(stresses[name])
         }
-        return self._replace(**own, degrees=degrees)
+        return self._replace(**in_state, degrees=degrees)
 
 
-def places(body: FreeBody) -> Iterator[Place]:
-    """Yield the places of a crankshaft under its forces; those of the journals only where their diameter is given.
+class Opposite(NamedTuple):
+    """The other throw of a shaft with cranks at both ends; turn: e^{−i(γ₂ − γ₁)}, from its frame to the first one's."""
 
-    α₀ is 1 for what is round (G, for the pin), and that of the allowable stresses for the webs.
+    body: FreeBody
+    turn: Any
+
+
+def places(
+    body: FreeBody, is_last: bool = True, opposite: Opposite | None = None
+) -> Iterator[Place]:
+    """Yield the places of a throw under its forces; those of the journals only where their diameter is given.
+
+    is_last: whether the flywheel is beyond its bearing B, or before it. α₀ is 1 for what is round (G, for the pin), and
+    that of the allowable stresses for the webs.
     """
-    shaft, f, diameter = body.shaft, body.shaft.flywheel_position, body.shaft.journal_diameter
+    shaft = body.shaft
     inner, outer = (
         shaft.web_distance + side * shaft.web_thickness / 2 for side in (-1, 1)
     )  # faces of a web
-    before = body.before_pin.imag * body.crank
     # in the middle of the pin M_b = a √(A_T² + A_D²) and M_d = A_T r (G)
-    sections = (
-        {"at web A": inner}
-        if shaft.overhung
-        else {"middle": 0.0, "at web A": -inner, "at web B": inner}
+    several = len(body.rods) > 1
+    under_rods = (
+        {f"rod {number}": u for number, (_, u) in enumerate(body.rods, 1)}
+        if several
+        else {"middle": 0.0}
     )
-    for name, u in sections.items():
-        yield _round("pin", name, body.moments_at(u), before, shaft.pin_diameter)
-
-    at_pin, at_shaft = magnitude(before), magnitude(body.torque)
-    worse = where(
-        at_pin >= at_shaft, at_pin, at_shaft
-    )  # of the ends of the web between pin and shaft
     if not shaft.overhung:
-        yield from _web(
-            "web_A", shaft, body.before_pin.real, body.moments_at(-shaft.web_distance), at_pin
-        )
-    last_web = "web_A" if shaft.overhung else "web_B"
-    yield from _web(last_web, shaft, body.along_web, body.moments_at(shaft.web_distance), worse)
-
-    if diameter is None:
-        return
-    if shaft.overhung:
-        yield _round("journal_A", "at web", body.moments_at(outer), body.torque, diameter)
-        yield _round("journal_A", "in bearing", body.moments_at(shaft.a), body.torque, diameter)
+        sections = {**under_rods, "at web A": -inner, "at web B": inner}
+    elif several:
+        sections = {**under_rods, "at web A": inner}
     else:
-        yield _round("journal_A", "at web", body.moments_at(-outer), None, diameter)
-        yield _round("journal_B", "at web", body.moments_at(outer), body.torque, diameter)
+        sections = {"at web A": inner}
+    for name, u in sections.items():
+        yield _round("pin", name, body.moments_at(u), body.torque_pin, shaft.pin_diameter)
+
+    at_pin, at_B = magnitude(body.torque_pin), magnitude(body.torque_B)
+    if not shaft.overhung:
+        at_A: Number = 0.0 if body.torque_A is None else magnitude(body.torque_A)
+        moments = body.moments_at(-shaft.web_distance)
+        yield from _web("web_A", shaft, body.before_pin.real, moments, _larger(at_pin, at_A))
+    last_web = "web_A" if shaft.overhung else "web_B"
+    yield from _web(
+        last_web, shaft, body.along_web, body.moments_at(shaft.web_distance), _larger(at_pin, at_B)
+    )
+    if shaft.journal_diameter is not None:
+        yield from _journals(body, shaft.journal_diameter, outer, is_last, opposite)
+
+
+def _journals(
+    body: FreeBody, diameter: Number, outer: Number, is_last: bool, opposite: Opposite | None
+) -> Iterator[Place]:
+    """Yield the places of the journals; outer: from the middle of the pin to the outer face of a web."""
+    shaft, f = body.shaft, body.shaft.flywheel_position
+    if shaft.overhung:
+        yield _round("journal_A", "at web", body.moments_at(outer), body.torque_B, diameter)
+        yield _round("journal_A", "in bearing", body.moments_at(shaft.a), body.torque_B, diameter)
+    else:
+        yield _round("journal_A", "at web", body.moments_at(-outer), body.torque_A, diameter)
+        yield _round("journal_B", "at web", body.moments_at(outer), body.torque_B, diameter)
+    if not is_last:
+        return
+    if opposite is not None:
+        # at the flywheel between the bearings, or at bearing B, by what acts on either side
+        before_B = where(f < 0, f, 0.0)
+        bending = (
+            body.moments_at(shaft.b + before_B)
+            + opposite.body.moments_at(shaft.a - before_B) * opposite.turn
+        )
+        torsion = _larger(magnitude(body.torque_B), magnitude(opposite.body.torque_B))
+        yield _round("journal_B", "at flywheel", bending, torsion, diameter)
+        return
     beyond = f >= 0  # of bearing B, in whose middle the bending is G f
     bending = np.where(beyond, body.weight * f, body.moments_at(shaft.b + f))
     name = "in bearing" if every(beyond) else "at flywheel"
-    yield _round("journal_B", name, bending, body.torque, diameter)
+    yield _round("journal_B", name, bending, body.torque_B, diameter)
+
+
+def _larger(first: Number, second: Number) -> Number:
+    return where(first >= second, first, second)
 
 
 def _round(part: str, name: str, moments: Force, torque: Number | None, diameter: Number) -> Place:
@@ -203,7 +247,10 @@ def _web(
 
 
 class StressColumns(AtAngles):
-    """Forces and stresses of one machine at crank angles φ (n,) in degrees; state: of its cylinder there."""
+    """Forces and stresses of one throw at crank angles φ (n,) in degrees; states: of its cylinders there.
+
+    torques: whether the torques in its journals are columns, as where there are several throws.
+    """
 
     commands = ("stress",)
     D = value("D", "force", "Radial force at the crank pin, positive toward the shaft")
@@ -217,55 +264,66 @@ class StressColumns(AtAngles):
     A_T = value("A_T", "force", "Force on bearing A along T")
     B_D = value("B_D", "force", "Force on bearing B, next to the flywheel, along D")
     B_T = value("B_T", "force", "Force on bearing B along T")
+    M_A = value("M_A", "torque", "Torque in journal A, that of the throws before this one")
+    M_B = value("M_B", "torque", "Torque in journal B, that of the throws up to this one")
     sigma = values_for(PARTS, "sigma_*", "σ_*", "stress", "Largest combined stress of * (Bach)")
     mises = values_for(
         PARTS, "mises_*", "σ_v,*", "stress", "Largest equivalent stress of * (von Mises)"
     )
 
-    def __init__(self, phi: Array, state: State, body: FreeBody) -> None:
-        self.phi, self._state, self._body = phi, state, body
+    def __init__(
+        self,
+        phi: Array,
+        states: Sequence[State],
+        body: FreeBody,
+        at: Sequence[Place],
+        torques: bool,
+    ) -> None:
+        self.phi, self._states, self._body, self._places, self._torques = (
+            phi,
+            states,
+            body,
+            at,
+            torques,
+        )
 
     @cached_property
     def answers(self) -> ValuesById:
         """The columns by id; of the stresses those of the parts that are examined."""
-        A, B = self._body.A, self._body.B
-        state = self._state
-        found = {
-            "D": state.D,
-            "T": state.T,
-            "A_D": A.real,
-            "A_T": A.imag,
-            "B_D": B.real,
-            "B_T": B.imag,
+        body = self._body
+        loaded = [state for state in self._states if state.drive.has_force]
+        columns: ValuesById = {
+            "D": sum(state.D for state in loaded) + np.zeros(len(self.phi)),
+            "T": sum(state.T for state in loaded) + np.zeros(len(self.phi)),
+            "A_D": body.A.real,
+            "A_T": body.A.imag,
+            "B_D": body.B.real,
+            "B_T": body.B.imag,
         }
-        if state.T_pin is not None:
-            found["T_pin"] = state.T_pin
-        for place in places(self._body):
+        if any(state.T_pin is not None for state in loaded):
+            columns["T_pin"] = sum(state.tangential_at_pin for state in loaded) + np.zeros(
+                len(self.phi)
+            )
+        if self._torques:
+            columns["M_A"] = np.zeros(len(self.phi)) if body.torque_A is None else body.torque_A
+            columns["M_B"] = body.torque_B
+        for place in self._places:
             for id, stress in (
                 (f"sigma_{place.part}", place.combined),
                 (f"mises_{place.part}", place.von_mises),
             ):
-                found[id] = np.maximum(found.get(id, 0.0), stress)
-        return found
+                columns[id] = np.maximum(columns.get(id, 0.0), stress)
+        return columns
 
 
-class CrankshaftStrength(Results):
-    """What `kurbel stress` computes: statics and stresses of the only crank throw of a machine.
-
-    Raises UsageError where the machine has no crankshaft, more than one cylinder, or no pressure that loads it. Of many
-    machines the key values are arrays (machines,).
-    """
+class Strength(Results):
+    """Statics and stresses of a throw, or of all throws of a machine; of many machines values are (machines,)."""
 
     command = "stress"
     state = StressColumns
 
     _loads = Heading("Loads")
-    P_dc = value(
-        "P_dc",
-        "force",
-        "Full piston force, without inertia, applied at the dead centre",
-        lambda one: one.full_force,
-    )
+    P_dc = value("P_dc", "force", "Full piston force, without inertia, applied at the dead centre")
     C_rod = value(
         "C_r",
         "force",
@@ -339,74 +397,237 @@ class CrankshaftStrength(Results):
         "ΣF, ΣM",
         "ratio",
         "Residual of the equilibrium of forces and moments on the crankshaft",
-        lambda one: one.unbalanced(),
+        lambda strength: strength.unbalanced(),
         plain="sum F, M",
         residual=True,
     )
 
-    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
-        obstacle = machine.strength_obstacle
-        if obstacle or machine.crankshaft is None:
-            raise UsageError(f"{machine.name}: {obstacle}")
-        self.machine = machine
-        self.shaft: Crankshaft = machine.crankshaft
-        self.forces = cylinders[0]
-        self.count = self.forces.drive.count
+    count: int | None
 
-    def _body(self, pin: Force, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
-        """Return the throw under a force on its pin at crank angles: of the nodes of pieces, or one of each machine."""
+    @property
+    def answers(self) -> ValuesById:
+        """The key values by id."""
+        raise NotImplementedError
+
+    def unbalanced(self) -> Number:
+        """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
+        raise NotImplementedError
+
+
+class Load(NamedTuple):
+    """What acts on a throw, at angles (…): the force of each rod on the pin in N, D + iT; M_A in N m, None if none.
+
+    pulls: centrifugal force of each rod in N, which its force has and its column D has not; opposite: the forces of the
+    rods of the throw at the other end of the shaft.
+    """
+
+    rods: Sequence[Force]
+    torque_A: Number | None
+    pulls: Sequence[Number] = ()
+    opposite: Sequence[Force] = ()
+
+
+class ThrowStrength(Strength):
+    """Statics and stresses of one throw, at the angles of crank 1.
+
+    number: along the shaft, from 0; cylinders: all of the machine.
+    """
+
+    def __init__(
+        self,
+        machine: Machine,
+        line: SupportedShaft,
+        number: int,
+        cylinders: Sequence[CylinderForces],
+    ) -> None:
+        self.machine, self.count, self.line = machine, cylinders[0].drive.count, line
+        self.shaft: Crankshaft = line.shaft
+        self.throw = line.throws[number]
+        self.name = f"throw {number + 1}"
+        self.rods = [cylinders[index] for index in self.throw.cylinders]
+        # torque is carried from the free end, of overhung cranks from none
+        before = () if self.shaft.overhung else line.throws[:number]
+        self.before = [cylinders[index] for throw in before for index in throw.cylinders]
+        self.opposite = None
+        if self.shaft.overhung and self.throw.flywheel and len(line.throws) > 1:
+            self.opposite = line.throws[1 - number]
+        self._beyond = (
+            [cylinders[index] for index in self.opposite.cylinders] if self.opposite else []
+        )
+        self._is_alone = len(cylinders) == 1
+
+    def _position(self, forces: CylinderForces) -> Number:
+        """Return the degrees by which a cylinder follows cylinder 1."""
+        return 0.0 if self._is_alone else position(forces)
+
+    # the throw under its loads
+
+    def _machine_at(self, pieces: Pieces | None) -> Machine:
+        """Return the machine, or of many the one of each piece."""
         several = pieces is not None and self.count is not None
-        machine = (
+        return (
             taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
         )
-        (cylinder,), shaft = machine.cylinders, machine.crankshaft
+
+    def _bodies(
+        self, load: Load, angle: CrankAngle, pieces: Pieces | None = None, number: int = 0
+    ) -> tuple[FreeBody, Opposite | None]:
+        """Return the throw under a load, and the one at the other end of the shaft.
+
+        angle: of the crank of one of its cylinders, `number` on the pin, at the nodes of pieces, or of each machine.
+        """
+        machine = self._machine_at(pieces)
+        shaft, cylinder = machine.crankshaft, machine.cylinders[self.throw.cylinders[number]]
         assert shaft is not None
-        return FreeBody(
-            shaft, cylinder.mechanism.crank, pin, flywheel_weight(machine, cylinder, angle)
-        )
+        weight = flywheel_weight(machine, cylinder, angle) if self.throw.flywheel else 0.0
+        crank = cylinder.mechanism.crank
+        body = FreeBody(shaft, crank, load.rods, weight, load.torque_A)
+        if self.opposite is None or not load.opposite:
+            return body, None
+        other_crank = machine.cylinders[self.opposite.cylinders[0]].mechanism.crank
+        apart = self.opposite.angle - self.throw.angle
+        turn = unit_vector(-(apart if pieces is None else pieces.of(apart)))
+        return body, Opposite(FreeBody(shaft, other_crank, load.opposite, 0.0), turn)
+
+    def _angle(self, degrees: Array, pieces: Pieces | None = None) -> CrankAngle:
+        """Return the angle of the crank of the first cylinder on the pin at angles of crank 1."""
+        later = self._position(self.rods[0])
+        if not np.any(later):
+            return CrankAngle.of(degrees) if pieces is None else CrankAngle.at_nodes(pieces)
+        # whole turns are taken off, which is exact: next to a large position an angle would lose its digits
+        later = np.fmod(later, 360.0)
+        return CrankAngle.of(degrees - (later if pieces is None else pieces.of(later)))
+
+    def _places(self, body: FreeBody, opposite: Opposite | None) -> list[Place]:
+        return list(places(body, self.throw.flywheel, opposite))
 
     def _columns(self, phi: Array, within: Array) -> StressColumns:
-        state = State.at(self.forces.drive, phi, within)
-        return StressColumns(phi, state, self._body(on_pin(state).complex, state.angle))
+        load, states = self._load_at(phi, within)
+        body, opposite = self._bodies(load, self._angle(phi))
+        has_torques = len(self.line.throws) > 1
+        return StressColumns(phi, states, body, self._places(body, opposite), has_torques)
+
+    def _load_at(self, degrees: Array, within: Array) -> tuple[Load, list[State]]:
+        """Return the load of the only machine at crank angles (n,) in degrees, and the states of its cylinders."""
+        states = [self._state(forces, degrees, within) for forces in self.rods]
+        torque_A = None
+        if self.before:
+            before = [self._state(forces, degrees, within) for forces in self.before]
+            torque_A = sum(
+                pin_load(state).imag * state.mechanism.crank for state in before
+            ) + np.zeros(len(degrees))
+        beyond = [pin_load(self._state(forces, degrees, within)) for forces in self._beyond]
+        zeros = np.zeros(len(degrees), complex)
+        return Load(
+            [zeros + pin_load(state) for state in states], torque_A, opposite=beyond
+        ), states
+
+    def _state(self, forces: CylinderForces, degrees: Array, within: Array) -> State:
+        return (
+            State.at(forces.drive, degrees, within)
+            if self._is_alone
+            else state_at(forces, degrees, within)
+        )
 
     # the cycle
+
+    @cached_property
+    def _common(self) -> Pieces:
+        """The pieces within those of all cylinders that load the throw."""
+        cylinders = [*self.rods, *self.before, *self._beyond]
+        if self._is_alone:
+            return self.rods[0].pieces
+        cycle = 360.0 * self.machine.revolutions
+        return common([(forces.pieces, self._position(forces)) for forces in cylinders], cycle)
+
+    def _pin_samples(self, forces: CylinderForces) -> Array:
+        """Return the force of a rod on the pin in N at the nodes of the common pieces, (nodes, pieces)."""
+        load = pin_load(forces.samples)
+        if self._is_alone:
+            return self._common.filled(0j) + load
+        return resampled(self._common, forces, load)[0]
+
+    @cached_property
+    def _samples(self) -> Array:
+        """What acts on the throw at the nodes of the common pieces, real (parts, nodes, pieces); see `_load`."""
+        pieces = self._common
+        rods = [self._pin_samples(forces) for forces in self.rods]
+        parts = [part for rod in rods for part in (rod.real, rod.imag)]
+        parts += [
+            pieces.filled(pieces.of(forces.drive.rod_centrifugal_force)) for forces in self.rods
+        ]
+        beyond = [self._pin_samples(forces) for forces in self._beyond]
+        parts += [part for rod in beyond for part in (rod.real, rod.imag)]
+        if self.before:
+            torque = pieces.filled(0.0)
+            for forces in self.before:
+                torque = torque + self._pin_samples(forces).imag * pieces.of(
+                    forces.drive.mechanism.crank
+                )
+            parts.append(torque)
+        return np.stack(parts)
+
+    def _load(self, parts: Array) -> Load:
+        """Return the load that these parts are, (parts, nodes, pieces)."""
+        rods, beyond = len(self.rods), len(self._beyond)
+        forces = parts[: 2 * rods : 2] + 1j * parts[1 : 2 * rods : 2]
+        others = parts[3 * rods : 3 * rods + 2 * beyond]
+        torque_A = parts[-1] if self.before else None
+        return Load(
+            [*forces], torque_A, [*parts[2 * rods : 3 * rods]], [*(others[::2] + 1j * others[1::2])]
+        )
+
+    def _bodies_on(self, pieces: Pieces, parts: Array) -> tuple[FreeBody, Opposite | None]:
+        return self._bodies(self._load(parts), self._angle(pieces.degrees, pieces), pieces)
 
     @cached_property
     def _cycle(self) -> tuple[Pieces, Array, Array]:
         """The cycle on pieces on which the loads are polynomials and no stress has a kink, cut where one is zero.
 
-        Besides the pieces D and T of the whole force on the pin in N, and what the rod itself adds to D; magnitudes in
-        N of the forces on pin, A and B, and of the rod force. Each (…, nodes, pieces). Raises UsageError where the
+        Besides the pieces the parts of `_samples`, and magnitudes in N of the forces on A and B, on the pin rod by rod,
+        and of the rod forces without their centrifugal forces. Each (…, nodes, pieces). Raises UsageError where the
         stresses of the only machine are no finite numbers.
         """
-        pieces, state = self.forces.pieces, self.forces.samples
-        pin = on_pin(state)
-        body = self._body(pin.complex, state.angle, pieces)
+        pieces, parts = self._common, self._samples
+        body, opposite = self._bodies_on(pieces, parts)
+        examined = self._places(body, opposite)
         if self.count is None and not all(
-            np.isfinite(one.combined + one.von_mises).all() for one in places(body)
+            np.isfinite(place.combined + place.von_mises).all() for place in examined
         ):
             raise UsageError(
                 f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
                 "check the numbers and units of the machine file"
             )
-        bends, at_pin, at_shaft = (
-            body.moments_at(body.shaft.web_distance),
-            body.before_pin.imag,
-            body.pin.imag,
-        )
-        both = [part for one in (body.pin, body.A, bends) for part in (one.real, one.imag)]
-        # the web beyond the pin is bent out of plane as much at the pin as at the shaft
-        kinked = (*both, body.along_web, at_pin - at_shaft, at_pin + at_shaft, state.D)
-        kinks = np.stack([*map(pieces.filled, kinked)])
-        parts = np.stack([*map(pieces.filled, (*pin, state.D - pin.D))])
+        kinks = np.stack([pieces.filled(kink) for kink in self._kinks(body, self._load(parts))])
 
         def magnitudes(some: Pieces, found: Array) -> Array:
-            D, T, own = found
-            body = self._body(D + 1j * T, CrankAngle.at_nodes(some), some)
-            return np.abs(np.stack((body.pin, body.A, body.B, D + own + 1j * T)))
+            body, _ = self._bodies_on(some, found)
+            load = self._load(found)
+            of_rods = [force + pull for force, pull in zip(load.rods, load.pulls)]
+            return np.abs(np.stack((body.A, body.B, *load.rods, *of_rods)))
 
         fine, loads, found = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
         return fine, found, np.asarray(loads)
+
+    def _kinks(self, body: FreeBody, load: Load) -> list[Number]:
+        """Return the quantities at whose zeros a magnitude or a stress bends."""
+        bends = body.moments_at(body.shaft.web_distance)
+        vectors = (
+            [*load.rods, body.pin, body.A, bends]
+            if len(load.rods) > 1
+            else [body.pin, body.A, bends]
+        )
+        kinks = [part for vector in vectors for part in (vector.real, vector.imag)]
+        # a web is bent out of plane as much at the pin as at the shaft
+        kinks += [body.along_web, body.torque_pin - body.torque_B, body.torque_pin + body.torque_B]
+        if body.torque_A is not None:
+            kinks += [
+                body.torque_A,
+                body.torque_A - body.torque_pin,
+                body.torque_A + body.torque_pin,
+                body.torque_B,
+            ]
+        return [*kinks, *(force.real + pull for force, pull in zip(load.rods, load.pulls))]
 
     @property
     def breaks(self) -> Array:
@@ -417,128 +638,271 @@ class CrankshaftStrength(Results):
     def _largest(self) -> list[Extreme]:
         """The largest of Bach's stresses over the cycle, then of von Mises', of every place."""
 
-        def stresses(some: Pieces, pin: Array) -> list[Array]:
-            found = [*places(self._body(pin[0] + 1j * pin[1], CrankAngle.at_nodes(some), some))]
-            return [*(one.combined for one in found), *(one.von_mises for one in found)]
+        def stresses(some: Pieces, parts: Array) -> list[Array]:
+            examined = self._places(*self._bodies_on(some, parts))
+            return [
+                *(place.combined for place in examined),
+                *(place.von_mises for place in examined),
+            ]
 
         return [
-            Extreme(*map(self.forces.result, pair))
-            for pair in zip(*highest(*self._cycle[:2], stresses))
+            Extreme(*map(self._result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))
         ]
+
+    def _result(self, values: Array) -> Any:
+        return result(values, self.count)
 
     @cached_property
     def answers(self) -> ValuesById:
         """The key values by id; stresses of the parts that are examined, the safety where k_b is given."""
-        shaft, pull, allowable = (
-            self.shaft,
-            self.forces.drive.rod_centrifugal_force,
-            self.shaft.allowable_bending,
-        )
-        found = self._of_loads()
-        found["C_rod"] = pull if some(pull != 0) else None
-        found["p_pin_dc"] = (
-            abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length
+        allowable = self.shaft.allowable_bending
+        values = self._of_loads()
+        pull = sum(forces.drive.rod_centrifugal_force for forces in self.rods)
+        values["C_rod"] = pull if some(pull != 0) else None
+        values["P_dc"] = self.full_force
+        length = self.shaft.pin_length / len(self.rods)
+        values["p_pin_dc"] = (
+            abs(self.full_force.value) / self.shaft.pin_diameter / length
         )  # G: P_max/(d_z l_z)
         at = self.at_dead_centre
         rows = [*zip(at, self._largest[: len(at)], self._largest[len(at) :])]
         for part in dict.fromkeys(place.part for place in at):
-            own = [row for row in rows if row[0].part == part]
-            resting = largest(*(Extreme(place.combined, place.degrees) for place, _, _ in own))
-            turning = largest(*(bach for _, bach, _ in own))
-            found[f"sigma_{part}_dc"], found[f"sigma_{part}_max"] = resting.value, turning
-            found[f"mises_{part}_max"] = largest(*(mises for _, _, mises in own))
+            of_part = [row for row in rows if row[0].part == part]
+            resting = largest(*(Extreme(place.combined, place.degrees) for place, _, _ in of_part))
+            turning = largest(*(bach for _, bach, _ in of_part))
+            values[f"sigma_{part}_dc"], values[f"sigma_{part}_max"] = resting.value, turning
+            values[f"mises_{part}_max"] = largest(*(mises for _, _, mises in of_part))
             worst = largest(resting, turning)
             if allowable is not None and not every(worst.value == 0):
                 safety = allowable / where(worst.value == 0, math.nan, worst.value)
-                found[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
-        return found
+                values[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
+        return values
 
     def _of_loads(self) -> ValuesById:
         """The key values of the loads by id, pressures of what has a diameter and length, p_m v where a speed is given.
 
-        The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n.
+        The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n. Each rod has
+        an equal part of the pin. Bearings between two throws carry both: their pressure is that of `kurbel bearings`.
         """
         (pieces, _, loads), shaft, speed = self._cycle, self.shaft, self.machine.speed
-        extremes = pieces.extremes(loads[:3])
+        rods = len(self.rods)
+        extremes = pieces.extremes(loads[: 2 + rods])
         most = [
-            Extreme(*map(self.forces.result, pair))
-            for pair in zip(extremes.largest, extremes.largest_at)
+            Extreme(*map(self._result, pair)) for pair in zip(extremes.largest, extremes.largest_at)
         ]
-        mean_A, mean_B, of_rod = map(self.forces.result, pieces.mean(loads[1:]))
-        found: ValuesById = {"A_max": most[1], "B_max": most[2]}
-        for part, load, mean in zip(_BEARINGS, most, (of_rod, mean_A, mean_B)):
-            diameter, length = shaft.journal_diameter, shaft.journal_length
-            if part == "pin":
-                diameter, length = shaft.pin_diameter, shaft.pin_length
+        means = [self._result(mean) for mean in pieces.mean(loads)]
+        mean_on_pin = functools.reduce(np.maximum, means[2 + rods :]) if rods > 1 else means[-1]
+        values: ValuesById = {"A_max": most[0], "B_max": most[1]}
+
+        pin_length = shaft.pin_length / rods
+        parts: dict[str, tuple[Extreme, Any, Number | None, Number | None]] = {
+            "pin": (largest(*most[2:]), mean_on_pin, shaft.pin_diameter, pin_length)
+        }
+        if len(self.line.throws) == 1:
+            journal = shaft.journal_diameter, shaft.journal_length
+            parts |= {
+                "journal_A": (most[0], means[0], *journal),
+                "journal_B": (most[1], means[1], *journal),
+            }
+        for part, (load, mean, diameter, length) in parts.items():
             if diameter is not None and length is not None:
-                found[f"p_{part}_max"] = Extreme(load.value / diameter / length, load.degrees)
-                found[f"p_{part}_mean"] = pressure = mean / diameter / length
-                found[f"k_{part}"] = (
+                pressure_max: Any = load.value / diameter / length
+                values[f"p_{part}_max"] = Extreme(pressure_max, load.degrees)
+                values[f"p_{part}_mean"] = pressure = mean / diameter / length
+                values[f"k_{part}"] = (
                     None if speed is None else pressure * math.pi * diameter * speed
                 )
-        return found
+        return values
 
     def unbalanced(self) -> Number:
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
-        pieces, state = self.forces.pieces, self.forces.samples
-        body = self._body(on_pin(state).complex, state.angle, pieces)
-        return self.forces.result(
-            pieces.largest(
-                body.equilibrium_residual(state.tangential_at_pin * state.mechanism.crank)
-            )
-        )
+        pieces = self._common
+        body, _ = self._bodies_on(pieces, self._samples)
+        torque = pieces.filled(0.0)
+        for forces in self.rods:
+            if forces.drive.has_force:
+                state = forces.samples
+                of_work = state.tangential_at_pin * state.mechanism.crank + 0j
+                torque = (
+                    torque
+                    + (of_work if self._is_alone else resampled(pieces, forces, of_work)[0]).real
+                )
+        return self._result(pieces.largest(body.equilibrium_residual(torque)))
+
+    @cached_property
+    def peak_torque(self) -> Extreme:
+        """The largest torque in journal B in N m, driving or driven, with its sign."""
+        pieces = self._common
+        body, _ = self._bodies_on(pieces, self._samples)
+        return pieces.extremes(pieces.filled(body.torque_B)[None]).each(self._result)[0].peak
 
     # the two positions of the book, and the worst of the cycle
 
-    def _force_extremes(self, column: str) -> Extremes:
-        _ = self._cycle  # forces that are too large are refused before they are searched
-        found = self.forces.extremes_of(column)
-        assert found is not None
-        return found
-
     @cached_property
-    def full_force(self) -> Extreme:
-        """The largest piston force without inertia in N, and the dead centre in degrees in which the throw takes it.
+    def _full_forces(self) -> list[Extreme | None]:
+        """Of each rod the largest piston force without inertia in N, and the dead centre of its own crank in degrees.
 
         Starting and slow running (R p. 608): the inner dead centre, or the outer one where pulling is stronger.
         """
-        found, motion = self._force_extremes("P_start"), self.forces.motion
-        pushes = found.largest.value >= -found.smallest.value
-        inner, outer = (
-            Extreme(found.largest.value, motion.phi_idc),
-            Extreme(found.smallest.value, motion.phi_odc),
-        )
-        return chosen(pushes, inner, outer)
+        _ = self._cycle  # forces that are too large are refused before they are searched
+        full = list[Extreme | None]()
+        for forces in self.rods:
+            extremes = forces.extremes_of("P_start") if forces.drive.has_force else None
+            if extremes is None:
+                full.append(None)
+                continue
+            pushes = extremes.largest.value >= -extremes.smallest.value
+            inner = Extreme(extremes.largest.value, forces.motion.phi_idc)
+            outer = Extreme(extremes.smallest.value, forces.motion.phi_odc)
+            full.append(chosen(pushes, inner, outer))
+        return full
+
+    @cached_property
+    def full_force(self) -> Extreme:
+        """The largest piston force without inertia in N, and the angle in degrees in which the throw takes it."""
+        forces = list[Extreme]()
+        for rod, full in zip(self.rods, self._full_forces):
+            if full is not None:
+                forces.append(Extreme(full.value, self._of_crank_1(rod, full.degrees)))
+        if not forces:
+            return Extreme(0.0, 0.0)
+        strongest = forces[0]
+        for force in forces[1:]:
+            strongest = chosen(np.abs(force.value) > np.abs(strongest.value), force, strongest)
+        return strongest
+
+    def _of_crank_1(self, forces: CylinderForces, degrees: Any) -> Any:
+        """Return the angle of crank 1 at an angle of the crank of a cylinder."""
+        if self._is_alone:
+            return degrees
+        return np.mod(degrees + self._position(forces), 360.0 * self.machine.revolutions)
 
     @cached_property
     def at_dead_centre(self) -> tuple[Place, ...]:
-        """Every place in the firing dead centre under the full force of the pressure: T = 0, D = P cos(φ+ψ)/cos ψ."""
-        force, degrees = self.full_force
-        angle = CrankAngle.of(degrees)
-        radial: Any = self.forces.drive.mechanism.radial(angle)
-        body = self._body(force * radial + 0j, angle)
-        return tuple(place._replace(degrees=degrees) for place in places(body))
+        """Every place in a dead centre under the full force of the pressure: T = 0, D = P cos(φ+ψ)/cos ψ.
+
+        Of several rods each by itself in its own dead centre, nothing else acting on the throw: the worst of these.
+        """
+        worst = list[Place]()
+        for number, (forces, full) in enumerate(zip(self.rods, self._full_forces)):
+            force, degrees = (0.0, 0.0) if full is None else full
+            angle = CrankAngle.of(degrees)
+            radial: Any = forces.drive.mechanism.radial(angle)
+            loads = [0 * force * radial + 0j for _ in self.rods]
+            loads[number] = force * radial + 0j
+            beyond = [0 * loads[0] for _ in self._beyond]
+            bodies = self._bodies(Load(loads, None, opposite=beyond), angle, number=number)
+            of_crank_1 = self._of_crank_1(forces, degrees)
+            examined = [place._replace(degrees=of_crank_1) for place in self._places(*bodies)]
+            worst = [_worse(*pair) for pair in zip(worst, examined)] if worst else examined
+        return tuple(worst)
 
     @property
     def at_largest_torque(self) -> tuple[Place, ...]:
         """Every place in the position of the largest torque, driving or driven, of the only machine."""
-        degrees = self._force_extremes("T").peak.degrees
-        body = self._beside([degrees])
-        side = int(np.abs(body.pin.imag).argmax())
-        return tuple(place.one_of(side, degrees) for place in places(body))
+        degrees = self.peak_torque.degrees
+        body, opposite = self._next_to([degrees])
+        side = int(np.abs(body.torque_B).argmax())
+        return tuple(place.of_state(side, degrees) for place in self._places(body, opposite))
 
     @property
     def at_worst(self) -> tuple[Place, ...]:
         """Every place at the crank angle of the running machine at which its own combined stress is largest."""
         angles = [worst.degrees for worst in self._largest[: len(self.at_dead_centre)]]
-        found = []
-        for number, (place, degrees) in enumerate(zip(places(self._beside(angles)), angles)):
+        worst = list[Place]()
+        for number, (place, degrees) in enumerate(
+            zip(self._places(*self._next_to(angles)), angles)
+        ):
             side = 2 * number + int(place.combined[2 * number : 2 * number + 2].argmax())
-            found.append(place.one_of(side, degrees))
-        return tuple(found)
+            worst.append(place.of_state(side, degrees))
+        return tuple(worst)
 
-    def _beside(self, degrees: Sequence[float]) -> FreeBody:
+    def _next_to(self, degrees: Sequence[float]) -> tuple[FreeBody, Opposite | None]:
         """Return the throw just before and just after each angle in degrees of the only machine, since T may jump."""
-        each = np.repeat(np.asarray(degrees), 2)
-        state = State.at(self.forces.drive, each, each + np.tile((-1e-9, 1e-9), len(degrees)))
-        return self._body(on_pin(state).complex, state.angle)
+        angles = np.repeat(np.asarray(degrees), 2)
+        load, _ = self._load_at(angles, angles + np.tile((-1e-9, 1e-9), len(degrees)))
+        return self._bodies(load, self._angle(angles))
+
+
+def _worse(place: Place, other: Place) -> Place:
+    """Return the one with the larger combined stress, of many machines for each of them."""
+    is_worse = other.combined > place.combined
+    if not np.ndim(is_worse):
+        return other if is_worse else place
+    numbers = {}
+    for name, first, second in zip(Place._fields, place, other):
+        if name not in ("part", "name") and first is not None:
+            numbers[name] = where(is_worse, second, first)
+    return place._replace(**numbers)
+
+
+class CrankshaftStrength(Strength):
+    """What `kurbel stress` computes: the strength of every throw of a machine, and the worst of all.
+
+    Raises UsageError where the machine has no crankshaft that can be examined, and no pressure that loads it.
+    """
+
+    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
+        obstacle = strength_obstacle(machine)
+        if obstacle or machine.crankshaft is None:
+            raise UsageError(f"{machine.name}: {obstacle}")
+        self.machine = machine
+        self.shaft: Crankshaft = machine.crankshaft
+        self.count = cylinders[0].drive.count
+        self.line = SupportedShaft(machine)
+        self.throws = [
+            ThrowStrength(machine, self.line, number, cylinders)
+            for number in range(len(self.line.throws))
+        ]
+
+    @property
+    def only(self) -> ThrowStrength | None:
+        """The throw, if there is one alone."""
+        return self.throws[0] if len(self.throws) == 1 else None
+
+    @property
+    def worst(self) -> ThrowStrength:
+        """The throw of the largest combined stress of any part, of the only machine."""
+
+        def largest_stress(throw: ThrowStrength) -> float:
+            stresses = [throw.answers.get(f"sigma_{part}_max") for part in PARTS]
+            return max(float(stress.value) for stress in stresses if stress is not None)
+
+        return max(self.throws, key=largest_stress)
+
+    def at(self, degrees: object, within: Array | None = None) -> Any:
+        """Return every column of the only throw at crank angles (n,) in degrees; of several each has its own."""
+        if self.only is None:
+            raise UsageError("each throw has its own columns: ask one of case.stress.throws")
+        return self.only.at(degrees, within)
+
+    def columns(self, degrees: object, *names: str) -> dict[str, Array]:
+        """Return columns of the only throw; see `Results`."""
+        if self.only is None:
+            raise UsageError("each throw has its own columns: ask one of case.stress.throws")
+        return self.only.columns(degrees, *names)
+
+    @cached_property
+    def answers(self) -> ValuesById:
+        """The key values by id: of all throws the largest, of safeties the smallest."""
+        if self.only:
+            return self.only.answers
+        worst: ValuesById = {}
+        for throw in self.throws:
+            for id, answer in throw.answers.items():
+                if answer is not None:
+                    worst[id] = answer if id not in worst else _worst(id, worst[id], answer)
+        return worst
+
+    def unbalanced(self) -> Number:
+        """Return the largest residual of equilibrium of any throw."""
+        return functools.reduce(np.maximum, [throw.unbalanced() for throw in self.throws])
+
+
+def _worst(id: str, value: Any, other: Any) -> Any:
+    """Return the worse of two key values: the smaller safety, of anything else what is larger by magnitude."""
+    if id.startswith("safety"):
+        return smallest(value, other)
+    if isinstance(value, Extreme):
+        return chosen(np.abs(other.value) > np.abs(value.value), other, value)
+    return np.maximum(value, other)

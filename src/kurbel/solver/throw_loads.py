@@ -1,0 +1,37 @@
+"""Loads of the rods on their crank pins at the angles of crank 1, at any angles or on pieces of the cycle."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kurbel.arrays import Array, ComplexArray
+from kurbel.numerics.pieces import Pieces
+from kurbel.solver.effort import position
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.state import State, on_pin
+from kurbel.solver.vector import Force
+
+
+def state_at(forces: CylinderForces, degrees: Array, within: Array) -> State:
+    """Return the state of a cylinder at angles (n,) of crank 1, on the sides of jumps that hold `within`."""
+    late = position(forces)
+    return State.at(forces.drive, degrees - late, within - late)
+
+
+def pin_load(state: State) -> Force:
+    """Return the force of a rod on the crank pin in N, D + iT; 0 where no force acts in the cylinder."""
+    return on_pin(state).complex if state.drive.has_force else 0j
+
+
+def resampled(pieces: Pieces, forces: CylinderForces, *values: Force) -> ComplexArray:
+    """Return quantities of a cylinder, sampled on its own pieces, at the nodes of common pieces, (q, nodes, pieces)."""
+    source = forces.pieces
+    parts = pieces.carried(real_parts(values, source.degrees.shape), source, position(forces))
+    return parts[::2] + 1j * parts[1::2]
+
+
+def real_parts(loads: Sequence[Force], shape: tuple[int, ...]) -> Array:
+    """Return real and imaginary part of every load, (2 q, nodes, pieces)."""
+    return np.stack(
+        [np.broadcast_to(part, shape) for load in loads for part in (np.real(load), np.imag(load))]
+    )
