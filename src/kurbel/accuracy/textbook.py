@@ -356,7 +356,6 @@ class TextbookCylinder:
         T = M / self.motion.r
         friction = -sense * (loads.drag + steady)
         kinks = (*loads.kinks, gas.difference)
-        T = M / self.motion.r
         return Forces(pose.slope, gas.force, gas.driving, friction, losses, T, M, kinks)
 
     def _gas(self, pose: Stance, lines: list[list[Line]]) -> Gas:
