@@ -72,15 +72,18 @@ def orders_of(throw: CylinderThrow, book: bool, count: int) -> ComplexArray:
     Samples are added until all orders in the upper half of those resolved vanish; a short rod needs more. book: of the
     acceleration of first order. Raises UsageError for a rod with more orders than can be computed, L/R < 1.00000001.
     """
-    samples, mechanism = _SAMPLES, throw.cylinder.mechanism
+    mechanism = throw.cylinder.mechanism
+    samples = _SAMPLES
     while samples * count <= _MOST_SAMPLES:
+        # d²x/dφ² at equal steps of a revolution
         degrees: Array = np.arange(samples, dtype=float)[:, None] * (360.0 / samples)
         angle = CrankAngle.of(degrees)
-        found = book_curvature(mechanism, angle) if book else mechanism.curvature(angle)
-        values = np.broadcast_to(found, (samples, count))
-        waves, least = np.fft.rfft(values, axis=0)[1:] / samples, _EPS * np.abs(values).max(axis=0)
+        curvature = book_curvature(mechanism, angle) if book else mechanism.curvature(angle)
+        values = np.broadcast_to(curvature, (samples, count))
+        waves = np.fft.rfft(values, axis=0)[1:] / samples
+        rounding = _EPS * np.abs(values).max(axis=0)
         # cosines and sines each: an even function is without sines
-        waves = unless_cancelled(waves, least, 1.0)
+        waves = unless_cancelled(waves, rounding, 1.0)
         last = int(np.flatnonzero(waves.any(axis=1)).max(initial=0)) + 1
         if last <= samples // 4:
             return waves[:last]
@@ -92,7 +95,7 @@ def orders_of(throw: CylinderThrow, book: bool, count: int) -> ComplexArray:
 
 def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
     """Return d²x/dφ² in m of first order, R 291; the true one where there is no rod, None where the book has none."""
-    offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
+    offer = next((offer for offer in mechanism.OFFERS if offer.quantity.id == "b_book"), None)
     return offer.factor(mechanism, angle) if offer else mechanism.curvature(angle)
 
 
@@ -113,23 +116,28 @@ def contributions_of(
 
     book: with the acceleration of first order. Cylinders with the same mechanism share one analysis.
     """
-    alike = {id(one.cylinder.mechanism): one for one in throws}
-    orders = {mechanism: orders_of(throw, book, count) for mechanism, throw in alike.items()}
-    k, found = max(_FEWEST, *map(len, orders.values())), []
+    # one analysis for each mechanism
+    throws_by_mechanism = {id(throw.cylinder.mechanism): throw for throw in throws}
+    orders = {key: orders_of(throw, book, count) for key, throw in throws_by_mechanism.items()}
+    k = max(_FEWEST, *map(len, orders.values()))
+    contributions = list[Contribution]()
+    # m x″(φ − β) e^{iγ}: a real function has the conjugate waves backward
     for throw in throws:
-        own = orders[id(throw.cylinder.mechanism)]
-        forward = np.concatenate((own, np.zeros((k - len(own), count))))
+        listed = orders[id(throw.cylinder.mechanism)]
+        forward = np.concatenate((listed, np.zeros((k - len(listed), count))))
         waves = np.concatenate((forward[::-1].conj(), np.zeros((1, count)), forward))
-        lag = np.multiply.outer(
-            np.arange(-k, k + 1), np.broadcast_to(throw.cylinder.crank_position, count)
-        )
-        found.append(Contribution(waves * throw.mass * unit_vector(throw.bank - lag), throw.place))
-    for weight in (*(throw.weight(throw.rotating) for throw in throws), *weights):
+        crank_position = np.broadcast_to(throw.cylinder.crank_position, count)
+        lag = np.multiply.outer(np.arange(-k, k + 1), crank_position)
+        turned = waves * throw.mass * unit_vector(throw.bank - lag)
+        contributions.append(Contribution(turned, throw.place))
+    # m_rot R of the throws, and the weights: u n² e^{inφ}
+    rotating = [throw.weight(throw.rotating) for throw in throws]
+    for weight in (*rotating, *weights):
         if some(weight.product != 0):
             waves = np.zeros((2 * k + 1, count), complex)
             waves[k + weight.order] = weight.product * weight.order**2
-            found.append(Contribution(waves, weight.place))
-    return found
+            contributions.append(Contribution(waves, weight.place))
+    return contributions
 
 
 class Unbalanced:
@@ -141,17 +149,19 @@ class Unbalanced:
     """
 
     def __init__(self, parts: Sequence[Contribution], z_0: Number | None) -> None:
-        waves, places = np.array([part.waves for part in parts]), [part.place for part in parts]
-        levers = [place - z_0 for place in places if place is not None and z_0 is not None]
-        self.force = _summed(waves, [1.0] * len(places))
-        self.moment = _summed(waves, levers) if len(levers) == len(places) else None
+        waves = np.array([part.waves for part in parts])
+        self.force = _summed(waves, [1.0] * len(parts))
+        # a moment needs the levers of all parts
+        self.moment: ClosedCurve | None = None
+        places = [part.place for part in parts if part.place is not None]
+        if len(places) == len(parts) and (z_0 is not None or not places):
+            self.moment = _summed(waves, [place - z_0 for place in places if z_0 is not None])
+        # orders are those of the waves forward and backward together
         sizes = np.abs(waves[:, :, 0]).max(axis=0)
-        both = (sizes + sizes[::-1])[len(sizes) // 2 + 1 :]
-        orders = tuple((np.flatnonzero(both > _SHOWN * both.max()) + 1).tolist())
-        self.orders, self.next_order = (
-            orders[:_MOST],
-            orders[_MOST] if len(orders) > _MOST else None,
-        )
+        sums = (sizes + sizes[::-1])[len(sizes) // 2 + 1 :]
+        orders = tuple((np.flatnonzero(sums > _SHOWN * sums.max()) + 1).tolist())
+        self.orders = orders[:_MOST]
+        self.next_order = orders[_MOST] if len(orders) > _MOST else None
 
 
 def _summed(waves: ComplexArray, levers: Sequence[Number]) -> ClosedCurve:
@@ -163,15 +173,14 @@ def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
     """Return the force or moment vectors (n,) of one machine at crank angles (n,) in degrees; rounding is set to 0."""
     waves = curve.waves[:, 0]
     present = np.flatnonzero(waves)
-    found = np.zeros(degrees.shape, complex)
+    vectors = np.zeros(degrees.shape, complex)
     for begin in range(0, len(present), _AT_ONCE):
         block = present[begin : begin + _AT_ONCE]
         turned = waves[block, None] * unit_vector(np.multiply.outer(curve.numbers[block], degrees))
-        for (
-            wave
-        ) in turned:  # one after another, so that the sum at an angle does not depend on the others
-            found += wave
-    return unless_cancelled(found, np.abs(waves).sum())
+        # one after another, so that the sum at an angle does not depend on the others
+        for wave in turned:
+            vectors += wave
+    return unless_cancelled(vectors, np.abs(waves).sum())
 
 
 # over the crank angle
@@ -188,8 +197,8 @@ def _vector(
     """Return a column: a component, or the magnitude, of a vector of `BalanceColumns`; asked: on request only."""
 
     def part(columns: BalanceColumns) -> Array | None:
-        found = columns.vector(name)
-        return None if found is None else of(found)
+        vector = columns.vector(name)
+        return None if vector is None else of(vector)
 
     return value(symbol, kind, text, part, on_request=("balance",) if asked else ())
 
@@ -261,23 +270,25 @@ class BalanceColumns(AtAngles):
     )
 
     def __init__(self, balance: MachineBalance, phi: Array, within: Array) -> None:
-        self.phi, self._balance, self._within = phi, balance, within
+        self.phi = phi
+        self._balance = balance
+        self._within = within
 
     def vector(self, name: str) -> ComplexArray | None:
         """Return a vector (n,): `force`, `moment`, `book force`, `book moment`; None where it does not exist."""
-        curve, omega = self._balance.curve(name), self._balance.omega
-        return (
-            None if curve is None or omega is None else vector_at(curve, self.phi) * (omega * omega)
-        )
+        curve = self._balance.curve(name)
+        omega = self._balance.omega
+        if curve is None or omega is None:
+            return None
+        return vector_at(curve, self.phi) * (omega * omega)
 
     def rolling(self) -> Array | None:
         """Return the rolling moment (n,) in N m; None without a speed."""
-        effort, roll = self._balance.effort, self._balance.roll
-        return (
-            None
-            if effort is None or roll is None
-            else effort.at(effort.pieces, roll, self.phi, self._within)
-        )
+        effort = self._balance.effort
+        roll = self._balance.roll
+        if effort is None or roll is None:
+            return None
+        return effort.at(effort.pieces, roll, self.phi, self._within)
 
 
 # the whole machine
@@ -301,41 +312,37 @@ class MachineBalance(Results):
     _unbalanced = Heading("Unbalanced forces and moments")
     _book = "The same by the acceleration of first order (R 291)"
     F_free_max = value(
-        "F_max", "force", "Largest unbalanced force", lambda one: one.largest("force")
+        "F_max", "force", "Largest unbalanced force", lambda balance: balance.largest("force")
     )
     F_free_max_book = value(
-        "F_0,max", "force", _book, lambda one: one.largest_of_book("book force")
+        "F_0,max", "force", _book, lambda balance: balance.largest_of_book("book force")
     )
     M_free_max = value(
-        "M_f,max", "torque", "Largest unbalanced moment", lambda one: one.largest("moment")
+        "M_f,max", "torque", "Largest unbalanced moment", lambda balance: balance.largest("moment")
     )
     M_free_max_book = value(
-        "M_f,0,max", "torque", _book, lambda one: one.largest_of_book("book moment")
+        "M_f,0,max", "torque", _book, lambda balance: balance.largest_of_book("book moment")
     )
     M_roll_max = value(
         "M_roll,max",
         "torque",
         "Largest rolling moment on the frame",
-        lambda one: one.rolling and one.rolling.largest,
-        unless=lambda one: one.rolls_as_it_turns,
+        lambda balance: balance.rolling and balance.rolling.largest,
+        unless=lambda balance: balance.rolls_as_it_turns,
     )
     M_roll_min = value(
         "M_roll,min",
         "torque",
         "Smallest rolling moment on the frame",
-        lambda one: one.rolling and one.rolling.smallest,
-        unless=lambda one: one.rolls_as_it_turns,
+        lambda balance: balance.rolling and balance.rolling.smallest,
+        unless=lambda balance: balance.rolls_as_it_turns,
     )
     _counterweights = Heading("Counterweights")
     counterweight_given = value(
         "u",
         "unbalance",
         "Vector sum of the given counterweights, mass times radius",
-        lambda one: (
-            abs(sum(weight.product for weight in one.counterweights))
-            if one.counterweights
-            else None
-        ),
+        lambda balance: balance.sum_of_counterweights(),
     )
     # it cancels the forward rotating vector of order 1
     _direction = "Its direction from throw 1"
@@ -343,31 +350,31 @@ class MachineBalance(Results):
         "u_1",
         "unbalance",
         "Counterweight balancing all rotating and half of the reciprocating mass",
-        lambda one: one.shown(abs(one.forward)),
+        lambda balance: balance.shown(abs(balance.forward)),
     )
     counterweight_best_angle = value(
-        "α_1", "angle", _direction, lambda one: one.angle_of(-one.forward)
+        "α_1", "angle", _direction, lambda balance: balance.angle_of(-balance.forward)
     )
     counterweight_least = value(
         "u_min",
         "unbalance",
         "Counterweight that minimises the largest unbalanced force",
-        lambda one: one.shown(abs(one.least)),
+        lambda balance: balance.shown(abs(balance.least)),
     )
     counterweight_least_angle = value(
-        "α_min", "angle", _direction, lambda one: one.angle_of(one.least)
+        "α_min", "angle", _direction, lambda balance: balance.angle_of(balance.least)
     )
     share_best = value(
         "c_min",
         "ratio",
         "Share of the reciprocating mass that this counterweight balances",
-        lambda one: one.share_of_least(),
+        lambda balance: balance.share_of_least(),
     )
     F_free_best = value(
         "F_min",
         "force",
         "Largest unbalanced force with it",
-        lambda one: one.times_omega_squared(*one.smallest_circle[1:]),
+        lambda balance: balance.times_omega_squared(*balance.smallest_circle[1:]),
     )
 
     _locomotive = Heading("Locomotive")
@@ -393,13 +400,12 @@ class MachineBalance(Results):
     )
 
     def __init__(self, effort: TurningEffort, compare: bool = False) -> None:
-        machine = self.machine = effort.machine
-        self.count, self._cylinders, self._turning, self._compare = (
-            effort.count,
-            effort.cylinders,
-            effort,
-            compare,
-        )
+        machine = effort.machine
+        self.machine = machine
+        self.count = effort.count
+        self._cylinders = effort.cylinders
+        self._turning = effort
+        self._compare = compare
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
         # counterweights turn with their throw, whether or not its cylinder has masses
         cranks = throws_with_masses(machine, first)
@@ -419,14 +425,23 @@ class MachineBalance(Results):
         self.throws = tuple(with_masses or cranks)
         self._first_arm = cranks[0].arm
         self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
-        self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
+        self.z_0 = middle_of(machine)
+        self.wheels = wheels_of(machine)
 
     def _columns(self, phi: Array, within: Array) -> BalanceColumns:
         return BalanceColumns(self, phi, within)
 
     def shown(self, values: Array) -> Any:
         """Return real numbers (machines,); of the only machine a float, None for nan."""
-        return None if self.count is None and math.isnan(values[0]) else result(values, self.count)
+        if self.count is None and math.isnan(values[0]):
+            return None
+        return result(values, self.count)
+
+    def sum_of_counterweights(self) -> Any:
+        """Return the magnitude in kg m of the vector sum of the given counterweights; None without any."""
+        if not self.counterweights:
+            return None
+        return abs(sum(weight.product for weight in self.counterweights))
 
     # unbalanced vectors, all divided by ω²
 
@@ -436,15 +451,12 @@ class MachineBalance(Results):
     @cached_property
     def _weights(self) -> tuple[Weight, ...]:
         """The weights in the machine file, on the crank and on balance shafts."""
-        shafts = (
-            Weight(
-                balance_shaft.product * unit_vector(balance_shaft.angle),
-                -balance_shaft.order if balance_shaft.against else balance_shaft.order,
-                balance_shaft.axial_position,
-            )
-            for balance_shaft in self.machine.balance_shafts
-        )
-        return (*self.counterweights, *shafts)
+        weights = list(self.counterweights)
+        for shaft in self.machine.balance_shafts:
+            order = -shaft.order if shaft.against else shaft.order
+            product = shaft.product * unit_vector(shaft.angle)
+            weights.append(Weight(product, order, shaft.axial_position))
+        return tuple(weights)
 
     @cached_property
     def bare(self) -> Unbalanced:
@@ -459,11 +471,9 @@ class MachineBalance(Results):
     @cached_property
     def book(self) -> Unbalanced | None:
         """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
-        if any(
-            book_curvature(throw.cylinder.mechanism, CrankAngle.of(0.0)) is None
-            for throw in self.throws
-        ):
-            return None
+        for throw in self.throws:
+            if book_curvature(throw.cylinder.mechanism, CrankAngle.of(0.0)) is None:
+                return None
         return self._with(self._weights, book=True)
 
     def curve(self, name: str) -> ClosedCurve | None:
@@ -533,11 +543,8 @@ class MachineBalance(Results):
     @property
     def cycle(self) -> float:
         """Period in degrees: one revolution, or the cycle of the machine where gas forces are in the rolling moment."""
-        return 360.0 * (
-            self.machine.revolutions
-            if any(cylinder.drive.has_gas for cylinder in self._cylinders)
-            else 1
-        )
+        has_gas = any(cylinder.drive.has_gas for cylinder in self._cylinders)
+        return 360.0 * self.machine.revolutions if has_gas else 360.0
 
     @property
     def breaks(self) -> Array:
@@ -565,9 +572,8 @@ class MachineBalance(Results):
         u on the crank adds u, so that max |F + u e^{iφ}| is smallest where −u is the centre of the smallest circle that
         encloses the curve.
         """
-        return -np.asarray(
-            unless_cancelled(self.forward + self.smallest_circle[0], np.abs(self.forward))
-        )
+        centre = self.forward + self.smallest_circle[0]
+        return -np.asarray(unless_cancelled(centre, np.abs(self.forward)))
 
     def angle_of(self, product: ComplexArray) -> Any:
         """Return the direction of a weight (machines,) from throw 1 in degrees, in (−180, 180]; none for no weight."""
@@ -584,18 +590,23 @@ class MachineBalance(Results):
         if others or not some(throw.mass != 0):
             return None
         opposite = -self.least / throw.arm
-        known = (np.abs(opposite.imag) <= _REAL * np.abs(opposite)) & (throw.mass != 0)
-        share = (opposite.real - throw.rotating) / np.where(known, throw.mass, math.nan)
+        is_opposite = np.abs(opposite.imag) <= _REAL * np.abs(opposite)
+        has_share = is_opposite & (throw.mass != 0)
+        share = (opposite.real - throw.rotating) / np.where(has_share, throw.mass, math.nan)
         return self.shown(share)
 
     @property
     def planes(self) -> tuple[Any, ...]:
         """The two correction planes in m: those given, else of the wheels, else of the outer cylinders; or ()."""
-        given = self.machine.counterweights
-        named = () if isinstance(given, tuple) else given.planes
+        counterweights = self.machine.counterweights
+        if not isinstance(counterweights, tuple) and counterweights.planes:
+            return counterweights.planes
+        if self.wheels:
+            return self.wheels
         places = [throw.place for throw in self.throws if throw.place is not None]
-        outer = (min(places), max(places)) if places and min(places) < max(places) else ()
-        return named or self.wheels or outer
+        if places and min(places) < max(places):
+            return min(places), max(places)
+        return ()
 
     def _in_planes(self, order: int) -> tuple[Weight, ...]:
         """Return the weights in two planes that cancel force and moment of an order; () without planes.
@@ -604,11 +615,14 @@ class MachineBalance(Results):
         """
         if not self.planes or self.bare.moment is None or self.z_0 is None:
             return ()
-        force, moment = (complex(one.of(order)[0]) for one in (self.bare.force, self.bare.moment))
-        first, second = self.planes
-        far = ((first - self.z_0) * force - moment) / (second - first)
-        return Weight((-force - far) / order**2, order, first), Weight(
-            far / order**2, order, second
+        force = complex(self.bare.force.of(order)[0])
+        moment = complex(self.bare.moment.of(order)[0])
+        z_a, z_b = self.planes
+        product_b = ((z_a - self.z_0) * force - moment) / (z_b - z_a)
+        product_a = -force - product_b
+        return (
+            Weight(product_a / order**2, order, z_a),
+            Weight(product_b / order**2, order, z_b),
         )
 
     @cached_property
@@ -623,19 +637,24 @@ class MachineBalance(Results):
         The pair of orders 2 and −2 is the Lanchester balancer. Weights of zero are left out. Where one weight at the
         right position cancels the moment as well, it is placed there; otherwise a shaft has two, in the two planes.
         """
-        force, moment = self.bare.force, self.bare.moment
-        found: list[Weight] = []
+        weights: list[Weight] = []
         for order in (-1, 2, -2):
-            circle = complex(force.of(order)[0])
-            couple = None if moment is None else complex(moment.of(order)[0])
-            arm = 1j if couple is None or not circle else couple / circle
-            at_a_place = abs(arm.imag) <= _REAL * (1 + abs(arm)) and self.z_0 is not None
-            if couple and not at_a_place and self.planes:
-                found += self._in_planes(order)
-            elif circle:
-                place = self.z_0 + arm.real if at_a_place and self.z_0 is not None else None
-                found.append(Weight(-circle / order**2, order, place))
-        return tuple(found)
+            # rotating vectors of force and moment
+            force = complex(self.bare.force.of(order)[0])
+            moment: complex | None = None
+            if self.bare.moment is not None:
+                moment = complex(self.bare.moment.of(order)[0])
+            # a real lever M/F is where one weight cancels both
+            lever = 1j if moment is None or not force else moment / force
+            has_place = abs(lever.imag) <= _REAL * (1 + abs(lever)) and self.z_0 is not None
+            if moment and not has_place and self.planes:
+                weights += self._in_planes(order)
+            elif force:
+                place: Number | None = None
+                if has_place and self.z_0 is not None:
+                    place = self.z_0 + lever.real
+                weights.append(Weight(-force / order**2, order, place))
+        return tuple(weights)
 
     # the wheels of a locomotive
 
@@ -645,18 +664,25 @@ class MachineBalance(Results):
         of: `all`, counterweights and rotating masses; `counterweights`, these alone; `reciprocating`, the reciprocating
         masses as if they turned with the crank.
         """
-        weights = [
-            (throw.name, throw.weight(throw.mass if of == "reciprocating" else throw.rotating))
-            for throw in self.throws
-        ]
-        added = (
-            []
-            if of == "reciprocating"
-            else [("counterweights", counterweight) for counterweight in self.counterweights]
-        )
-        each = added if of == "counterweights" else [*weights, *added]
-        pairs = [split_by_lever(one, self.wheels, owner) for owner, one in each]
-        return sum(near.product for near, _ in pairs), sum(far.product for _, far in pairs)
+        near_sum: Any = 0
+        far_sum: Any = 0
+        if of != "counterweights":
+            for throw in self.throws:
+                mass = throw.mass if of == "reciprocating" else throw.rotating
+                near, far = split_by_lever(throw.weight(mass), self.wheels, throw.name)
+                near_sum = near_sum + near.product
+                far_sum = far_sum + far.product
+        if of != "reciprocating":
+            for counterweight in self.counterweights:
+                near, far = split_by_lever(counterweight, self.wheels, "counterweights")
+                near_sum = near_sum + near.product
+                far_sum = far_sum + far.product
+        return near_sum, far_sum
+
+    def _larger_in_wheels(self, of: str) -> Any:
+        """Return the larger magnitude in kg m of `in_wheels`."""
+        near, far = map(abs, self.in_wheels(of))
+        return where(near >= far, near, far)
 
     @cached_property
     def answers(self) -> dict[str, object]:
@@ -665,31 +691,38 @@ class MachineBalance(Results):
         The counterweights balance all rotating masses. Their excess, for a share of the reciprocating
         masses, alternately loads and unloads its wheel: the hammer blow.
         """
-        given, omega = self.machine.locomotive, self.omega
-        if given is None:
+        locomotive = self.machine.locomotive
+        omega = self.omega
+        if locomotive is None:
             return {}
-        found: dict[str, object] = {
+        answers: dict[str, object] = {
             "traction_variation": self.largest("force", along=True),
             "swaying_couple": self.largest("moment", along=True),
         }
-        wheels = [map(abs, self.in_wheels(of)) for of in ("all", "reciprocating", "counterweights")]
-        most, whole, weight = (where(near >= far, near, far) for near, far in wheels)
+        # rotating unbalance of the worse wheel: that which is left, and those of all reciprocating masses and the weights
+        excess = self._larger_in_wheels("all")
+        reciprocating = self._larger_in_wheels("reciprocating")
+        counterweight = self._larger_in_wheels("counterweights")
         if self.counterweights:
-            found["counterweight_wheel"] = weight
+            answers["counterweight_wheel"] = counterweight
+        # at the speed
         if omega is not None and some(omega != 0):
-            found["hammer_blow"], blow = most * (omega * omega), whole * (omega * omega)
-            if given.hammer_limit is not None:
-                found["share_allowed"] = given.hammer_limit / where(
-                    blow > given.hammer_limit, blow, given.hammer_limit
-                )
-            if given.wheel_diameter is not None:
-                found["train_speed"] = given.wheel_diameter / 2 * omega
-        if given.wheel_load is not None and some(most != 0):
-            lifting = sqrt(given.wheel_load / where(most != 0, most, math.nan)) / (2 * math.pi)
-            found["hammer_speed"] = lifting
-            if given.wheel_diameter is not None:
-                found["hammer_train_speed"] = given.wheel_diameter / 2 * (2 * math.pi * lifting)
-        return found
+            answers["hammer_blow"] = excess * (omega * omega)
+            limit = locomotive.hammer_limit
+            if limit is not None:
+                blow = reciprocating * (omega * omega)
+                answers["share_allowed"] = limit / where(blow > limit, blow, limit)
+            if locomotive.wheel_diameter is not None:
+                answers["train_speed"] = locomotive.wheel_diameter / 2 * omega
+        # the speed at which the wheel lifts
+        if locomotive.wheel_load is not None and some(excess != 0):
+            divisor = where(excess != 0, excess, math.nan)
+            hammer_speed = sqrt(locomotive.wheel_load / divisor) / (2 * math.pi)
+            answers["hammer_speed"] = hammer_speed
+            if locomotive.wheel_diameter is not None:
+                radius = locomotive.wheel_diameter / 2
+                answers["hammer_train_speed"] = radius * (2 * math.pi * hammer_speed)
+        return answers
 
 
 def changes_angular_momentum(cylinder: CylinderForces) -> bool:

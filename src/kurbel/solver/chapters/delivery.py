@@ -39,6 +39,7 @@ from kurbel.quantity import ValuesById, value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort, position
 from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, result
+from kurbel.solver.forces import CylinderForces
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.state import State
 
@@ -51,71 +52,86 @@ _CANCELLED = 4e-14
 
 
 class DrivenPiston(NamedTuple):
-    """A driven piston: its number among those of the cylinder, its pressures, and which of its ends deliver."""
+    """A driven piston: its number in the cylinder, its pressures, which ends deliver, and whether it pumps."""
 
     number: int
     gas: PistonGas
-    head: bool
-    crank: bool
-    pumps: bool
+    head_delivers: bool
+    crank_delivers: bool
+    is_pump: bool
 
 
 def driven_pistons(drive: Drive) -> Iterator[DrivenPiston]:
-    """Yield the pistons of a cylinder that are driven by it; raises UsageError where many machines differ in that."""
+    """Yield the pistons of a cylinder that are driven by it.
+
+    Raises UsageError where many machines differ in that.
+    """
     for gas in drive.gas:
+        # the gas takes work from a driven piston; a compressor without work is driven, too
         chambers = list(gas.piston.chambers.values())
-        ideal = any(isinstance(chamber, Compressor) for chamber in chambers)
-        if _agreed(gas.work < 0) or (ideal and not _agreed(gas.work > 0)):
-            number = drive.cylinder.pistons.index(gas.piston)
-            works = iter(gas.works)
-            head, crank = (
-                end is not None and _agreed(next(works) < 0) for end in (gas.head, gas.crank)
-            )
-            pumps = not ideal and (drive.machine.pump is not None or all(map(_is_level, chambers)))
-            yield DrivenPiston(number, gas, head, crank, pumps)
+        is_compressor = any(isinstance(chamber, Compressor) for chamber in chambers)
+        is_driven = _alike(gas.work < 0)
+        if not is_driven and is_compressor:
+            is_driven = not _alike(gas.work > 0)
+        if not is_driven:
+            continue
+        # an end delivers if work is done on its gas; there are works of the ends that there are
+        works = iter(gas.works)
+        head_delivers = gas.head is not None and _alike(next(works) < 0)
+        crank_delivers = gas.crank is not None and _alike(next(works) < 0)
+        # a pump is declared as one, or has a constant pressure on each stroke
+        is_pump = False
+        if not is_compressor:
+            is_pump = drive.machine.pump is not None or all(map(_is_level, chambers))
+        number = drive.cylinder.pistons.index(gas.piston)
+        yield DrivenPiston(number, gas, head_delivers, crank_delivers, is_pump)
 
 
-def _agreed(condition: Truth) -> bool:
-    if some(condition) and not every(condition):
+def _alike(condition: Truth) -> bool:
+    """Return the condition that all machines have in common; raises UsageError where they differ."""
+    holds_for_all = bool(every(condition))
+    if some(condition) and not holds_for_all:
         raise UsageError("these machines differ in what is driven")
-    return bool(every(condition))
+    return holds_for_all
 
 
 def _is_level(chamber: Chamber | None) -> bool:
     """Return whether a chamber has one pressure on each stroke, as a pump's has."""
-    if isinstance(chamber, Card):
-        return all(
-            np.array_equal(pressure, line.pressures[0])
-            for line in chamber.lines
-            for pressure in line.pressures
-        )
-    return isinstance(chamber, Rectangle) and not some(chamber.mean != 0)
+    if not isinstance(chamber, Card):
+        return isinstance(chamber, Rectangle) and not some(chamber.mean != 0)
+    for line in chamber.lines:
+        first = line.pressures[0]
+        if not all(np.array_equal(pressure, first) for pressure in line.pressures):
+            return False
+    return True
 
 
 def _displaced(
     state: State,
     piston: DrivenPiston,
-    draws: bool = False,
-    rises: bool = False,
-    head: bool = True,
-    crank: bool = True,
+    is_suction: bool = False,
+    is_derivative: bool = False,
+    head_counts: bool = True,
+    crank_counts: bool = True,
 ) -> Array:
-    """Return dV/dφ in m³ of what chambers deliver, or draw in; rises: d²V/dφ². On each stroke it is one of them.
+    """Return dV/dφ in m³ of what the chambers of a piston deliver; on each stroke it is one of them.
 
-    head, crank: whether that end counts.
+    is_suction: of what they draw in; is_derivative: d²V/dφ² instead; head_counts, crank_counts: whether that end does.
     """
-    own = state.drive.cylinder.pistons[
-        piston.number
-    ]  # of many machines its numbers are those of the angles
-    areas = own.head_area * (piston.head and head), own.crank_area * (piston.crank and crank)
-    # a piston that a lever moves against the crosshead draws in where another one delivers
-    outward, back = (
-        abs(own.lever_ratio) * area
-        for area in (areas if draws != piston.gas.turned else areas[::-1])
-    )
-    return np.where(state.direction > 0, outward, -back) * np.asarray(
-        state.curvature if rises else state.slope
-    )
+    # of many machines the numbers of the piston of the state are those of the angles
+    dimensions = state.drive.cylinder.pistons[piston.number]
+    head_area = dimensions.head_area if piston.head_delivers and head_counts else 0.0
+    crank_area = dimensions.crank_area if piston.crank_delivers and crank_counts else 0.0
+    # a chamber delivers while its volume falls: the crank end on the outstroke, the head end on the return
+    # stroke, and it draws in on the other one; of a piston that a lever moves against the crosshead it is turned round
+    outward_area, return_area = crank_area, head_area
+    if is_suction != piston.gas.turned:
+        outward_area, return_area = head_area, crank_area
+    # dV/dφ = A dx/dφ is positive on both strokes
+    ratio = abs(dimensions.lever_ratio)
+    area = np.where(state.direction > 0, ratio * outward_area, -(ratio * return_area))
+    change = state.curvature if is_derivative else state.slope
+    return area * np.asarray(change)
 
 
 # pumps
@@ -147,17 +163,21 @@ class DeliveryState(AtAngles):
     delivery_friction_head = value("h_f,d", "length", "Head of friction in the delivery pipe")
 
     def __init__(self, delivery: Delivery, phi: Array, within: Array) -> None:
-        self._delivery, self.phi, self._within = delivery, phi, within
+        self._delivery = delivery
+        self.phi = phi
+        self._within = within
 
     @cached_property
     def answers(self) -> dict[str, Array]:
         """The columns (n,) that there are."""
-        pieces, machine = self._delivery.pieces, np.zeros(len(self.phi), dtype=np.intp)
-        found = dict[str, Array]()
+        pieces = self._delivery.pieces
+        machine = np.zeros(len(self.phi), dtype=np.intp)
+        columns = dict[str, Array]()
         for id, values in self._delivery.sampled.items():
-            at = pieces.at(values, machine, self.phi, self._within)
-            found[id] = np.asarray(unless_cancelled(at, pieces.largest(values)[0], _CANCELLED))
-        return found
+            column = pieces.at(values, machine, self.phi, self._within)
+            largest = pieces.largest(values)[0]
+            columns[id] = np.asarray(unless_cancelled(column, largest, _CANCELLED))
+        return columns
 
 
 _PIPES = {"": ("", "delivery"), "suction_": ("s,", "suction")}
@@ -173,8 +193,8 @@ class Delivery(Results):
     """What one pumping piston, or all of a machine, deliver; key values in SI, of many machines (machines,).
 
     pieces: of the cycle in degrees; rate: takes the words of `_displaced` and returns dV/dφ in m³ per radian at their
-    nodes; both: whether both ends of one piston deliver; pump: its pipes, None for one piston of several. Raises
-    UsageError for a vessel that would empty.
+    nodes; is_double_acting: whether both ends of one piston deliver; pump: its pipes, None for one piston of several.
+    Raises UsageError for a vessel that would empty.
     """
 
     command, state = "delivery", DeliveryState
@@ -215,13 +235,21 @@ class Delivery(Results):
         pieces: Pieces,
         count: int | None,
         rate: Callable[..., Array],
-        both: bool,
+        is_double_acting: bool,
         pump: Pump | None = None,
     ) -> None:
-        self.name, self.machine, self.pieces, self.pump = name, machine, pieces, pump
-        self._rate, self._both = cache(rate), both
-        both_pipes = ((pump.suction_pipe, True), (pump.delivery_pipe, False)) if pump else ()
-        self._pipes = [(pipe, draws) for pipe, draws in both_pipes if pipe]
+        self.name = name
+        self.machine = machine
+        self.pieces = pieces
+        self.pump = pump
+        self._rate = cache(rate)
+        self._is_double_acting = is_double_acting
+        # the pipes, and whether each is that of suction
+        self._pipes = list[tuple[Pipe, bool]]()
+        if pump and pump.suction_pipe:
+            self._pipes.append((pump.suction_pipe, True))
+        if pump and pump.delivery_pipe:
+            self._pipes.append((pump.delivery_pipe, False))
         self._result = partial(result, count=count)
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         self.breaks = pieces.ends
@@ -236,36 +264,47 @@ class Delivery(Results):
         """The columns that there are, at the nodes of the pieces; none without a speed."""
         if self.omega is None:
             return {}
-        omega, of = self.pieces.of(self.omega), self.pieces.of
-        found = {"flow": self._rate() * omega, "flow_suction": self._rate(draws=True) * omega}
-        if self._both:
-            found["flow_head"], found["flow_crank"] = (
-                self._rate(crank=False) * omega,
-                self._rate(head=False) * omega,
-            )
-        for pipe, draws in self._pipes:
-            name = "" if draws else "delivery_"
+        # q = dV/dφ ω
+        omega = self.pieces.of(self.omega)
+        columns = {
+            "flow": self._rate() * omega,
+            "flow_suction": self._rate(is_suction=True) * omega,
+        }
+        if self._is_double_acting:
+            columns["flow_head"] = self._rate(crank_counts=False) * omega
+            columns["flow_crank"] = self._rate(head_counts=False) * omega
+        for pipe, is_suction in self._pipes:
+            prefix = "" if is_suction else "delivery_"
+            # h_a = l/(g a) dq/dt; behind a vessel the flow is steady
             if pipe.vessel is None:
-                scale = of(pipe.length / (GRAVITY * _section(pipe)))
-                found[f"{name}acceleration_head"] = (
-                    self._rate(draws=draws, rises=True) * omega**2 * scale
-                )
-            passed = of(self._mean(draws)) if pipe.vessel else self._rate(draws=draws)
-            heads = of(_friction(pipe) / GRAVITY) * (passed * omega) ** 2
-            found[f"{name}friction_head"] = self.pieces.filled(heads)
-        return found
+                inertia = self.pieces.of(pipe.length / (GRAVITY * _section(pipe)))
+                derivative = self._rate(is_suction=is_suction, is_derivative=True)
+                columns[f"{prefix}acceleration_head"] = derivative * omega**2 * inertia
+            # h_f = f l u²/(2 g d), u = q/a
+            rate = self._rate(is_suction=is_suction)
+            if pipe.vessel:
+                rate = self.pieces.of(self._mean(is_suction))
+            heads = self.pieces.of(_friction(pipe) / GRAVITY) * (rate * omega) ** 2
+            columns[f"{prefix}friction_head"] = self.pieces.filled(heads)
+        return columns
 
-    def _mean(self, draws: bool = False, cubed: bool = False) -> Number:
-        """Return the mean over the cycle of dV/dφ, or of its cube."""
-        rate = self._rate(draws=draws)
-        return self._result(self.pieces.mean(rate * rate * rate if cubed else rate))  # ** 3 is slow
+    def _mean(self, is_suction: bool = False) -> Number:
+        """Return the mean over the cycle of dV/dφ."""
+        return self._result(self.pieces.mean(self._rate(is_suction=is_suction)))
 
-    def _swing(self, draws: bool) -> Number:
+    def _mean_cube(self, is_suction: bool = False) -> Number:
+        """Return the mean over the cycle of (dV/dφ)³."""
+        rate = self._rate(is_suction=is_suction)
+        return self._result(self.pieces.mean(rate * rate * rate))  # ** 3 is slow
+
+    def _swing(self, is_suction: bool) -> Number:
         """Return the fluctuating volume in m³ of a flow, with all its crossings of the mean."""
-        rate = self._rate(draws=draws)
-        above = self.pieces.running(rate - self.pieces.of(self.pieces.mean(rate)))[None]
-        high, _, low, _ = self.pieces.extremes(above, self.pieces.integral(rate)[None])
-        return self._result((high - low)[0])
+        rate = self._rate(is_suction=is_suction)
+        mean = self.pieces.of(self.pieces.mean(rate))
+        volume = self.pieces.running(rate - mean)[None]
+        scale = self.pieces.integral(rate)[None]
+        largest, _, smallest, _ = self.pieces.extremes(volume, scale)
+        return self._result((largest - smallest)[0])
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
@@ -273,70 +312,86 @@ class Delivery(Results):
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
-        declared = {id for id, row in self.rows.columns.items() if row.quantity.extremes}
-        found = {id: values for id, values in self.sampled.items() if id in declared}
-        return (
-            dict(zip(found, self.pieces.extremes([*found.values()]).each(self._result)))
-            if found
-            else {}
-        )
+        rows = self.rows.columns
+        columns = {
+            id: values
+            for id, values in self.sampled.items()
+            if id in rows and rows[id].quantity.extremes
+        }
+        if not columns:
+            return {}
+        extremes = self.pieces.extremes([*columns.values()]).each(self._result)
+        return dict(zip(columns, extremes))
 
     @cached_property
     def answers(self) -> ValuesById:
         """The key values that are no extremes."""
-        found, mean = ValuesById(), self._mean()
+        # what the strokes give without a speed
+        mean = self._mean()
         slip = self.machine.pump.slip if self.machine.pump else 0.0
-        found["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
-        found["volume_fluctuation"] = swing = self._swing(draws=False)
-        found["vessel_saving"] = self._saving(mean)
-        for pipe, draws in self._pipes:
-            if pipe.vessel and draws:
-                sizes = _vessel(pipe.vessel, self._swing(draws=True), "suction")
-                found["suction_vessel_volume"], found["suction_vessel_swing"] = sizes
+        swing = self._swing(is_suction=False)
+        answers = ValuesById()
+        answers["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
+        answers["volume_fluctuation"] = swing
+        answers["vessel_saving"] = self._saving(mean)
+        # air vessels
+        for pipe, is_suction in self._pipes:
+            if pipe.vessel and is_suction:
+                suction_swing = self._swing(is_suction=True)
+                volume, delta = _vessel(pipe.vessel, suction_swing, "suction")
+                answers["suction_vessel_volume"] = volume
+                answers["suction_vessel_swing"] = delta
             elif pipe.vessel:
-                found["vessel_volume"], found["vessel_swing"] = _vessel(
-                    pipe.vessel, swing, "delivery"
-                )
+                volume, delta = _vessel(pipe.vessel, swing, "delivery")
+                answers["vessel_volume"] = volume
+                answers["vessel_swing"] = delta
         if self.omega is None:
-            return found
+            return answers
 
-        found["flow_mean"] = mean * self.omega
+        # flow, work in the pipes, and suction lift at the speed
+        answers["flow_mean"] = mean * self.omega
         if self._pipes:
             for id, work in zip(_PIPE_WORKS, self._works_of_pipes):
-                found[id] = work * self.omega**2
+                answers[id] = work * self.omega**2
         if self.pump and self.pump.suction_pipe:
-            liquid, heads = self.pump.liquid, self.sampled["friction_head"]
-            if "acceleration_head" in self.sampled:
-                heads = heads + self.sampled["acceleration_head"]
-            most = self._result(self.pieces.extremes(heads[None]).largest[0])
-            static = (self.machine.ambient - liquid.vapour_pressure) / (liquid.density * GRAVITY)
-            found["suction_lift_max"] = static - most
-        return found
+            answers["suction_lift_max"] = self._suction_lift(self.pump)
+        return answers
+
+    def _suction_lift(self, pump: Pump) -> Number:
+        """Return the head in m that is left of the barometer for the lift, where the pipe takes most of it."""
+        heads = self.sampled["friction_head"]
+        if "acceleration_head" in self.sampled:
+            heads = heads + self.sampled["acceleration_head"]
+        largest = self._result(self.pieces.extremes(heads[None]).largest[0])
+        weight = pump.liquid.density * GRAVITY
+        barometric_head = (self.machine.ambient - pump.liquid.vapour_pressure) / weight
+        return barometric_head - largest
 
     def _saving(self, mean: Number) -> Number:
         """Return the share of the work against friction that vessels at all pipes save: 1 − A_R,m/A_R,0.
 
         Without pipes it is that of one for the flow delivered, of which the mean per radian is given in m³.
         """
-        of_flow_alone = 1 - mean**3 / self._mean(cubed=True)
+        saving_of_flow = 1 - mean**3 / self._mean_cube()
         if not self._pipes:
-            return of_flow_alone
+            return saving_of_flow
         _, bare, steady = self._works_of_pipes
-        rubs = bare > 0
-        return where(rubs, 1 - steady / where(rubs, bare, 1.0), of_flow_alone)
+        has_friction = bare > 0
+        saving = 1 - steady / where(has_friction, bare, 1.0)
+        return where(has_friction, saving, saving_of_flow)
 
     @cached_property
     def _works_of_pipes(self) -> tuple[Number, ...]:
         """Works over ω² per cycle against friction in all pipes: as they are, without vessels, with one at each."""
-        works = [self._works_of(pipe, draws) for pipe, draws in self._pipes]
+        works = [self._works_of(pipe, is_suction) for pipe, is_suction in self._pipes]
         return tuple(total(*terms) for terms in zip(*works))
 
-    def _works_of(self, pipe: Pipe, draws: bool) -> tuple[Number, Number, Number]:
+    def _works_of(self, pipe: Pipe, is_suction: bool) -> tuple[Number, Number, Number]:
         """Return the works over ω² against friction in a pipe: as it is, without a vessel, and with one."""
         assert self.pump is not None
         scale = self.pump.liquid.density * _friction(pipe) * math.radians(self.pieces.cycle)
-        bare = scale * self._mean(draws, cubed=True)
-        steady = scale * self._mean(draws) ** 3
+        bare = scale * self._mean_cube(is_suction)
+        steady = scale * self._mean(is_suction) ** 3
         as_it_is = steady if pipe.vessel else bare
         return as_it_is, bare, steady
 
@@ -352,23 +407,28 @@ def _friction(pipe: Pipe) -> Number:
 
 def _vessel(vessel: Vessel, swing: Number, place: str) -> tuple[Number, Number]:
     """Return mean volume in m³ and swing of pressure of a vessel that takes a fluctuating volume in m³."""
+    # V = ΔV (r + 1)/(2 (r − 1)), r = ((2 + δ)/(2 − δ))^(1/n)
     if vessel.pressure_swing is not None:
         delta = vessel.pressure_swing
         ratio = ((2 + delta) / (2 - delta)) ** (1 / vessel.exponent)
         return swing * (ratio + 1) / (2 * (ratio - 1)), delta
+    # a vessel of a given volume must hold more than half of the fluctuating volume
     volume: Any = vessel.volume
     half = swing / 2
-    empties = volume <= half
-    if isinstance(empties, (bool, np.bool_)) and empties:
-        least, given = show(float(half), "volume"), show(volume, "volume")
+    is_empty = volume <= half
+    if isinstance(is_empty, (bool, np.bool_)) and is_empty:
+        least_text = show(float(half), "volume")
+        volume_text = show(volume, "volume")
         raise UsageError(
-            f"pump.{place}_pipe.vessel.volume: {given} would empty; it must be more than ΔV/2 = {least}"
+            f"pump.{place}_pipe.vessel.volume: {volume_text} would empty; "
+            f"it must be more than ΔV/2 = {least_text}"
         )
-    ratio = (
-        where(empties, math.nan, (volume + half) / where(empties, 1.0, volume - half))
-        ** vessel.exponent
-    )
-    return where(empties, math.nan, volume), 2 * (ratio - 1) / (ratio + 1)
+    # r = V_max/V_min of the volumes, to the power n of the pressures; of many machines NaN where it empties
+    smallest = where(is_empty, 1.0, volume - half)
+    volume_ratio = where(is_empty, math.nan, (volume + half) / smallest)
+    pressure_ratio = volume_ratio**vessel.exponent
+    delta = 2 * (pressure_ratio - 1) / (pressure_ratio + 1)
+    return where(is_empty, math.nan, volume), delta
 
 
 # compressors
@@ -381,49 +441,62 @@ class CompressorEnd:
     """
 
     def __init__(self, drive: Drive, piston: DrivenPiston, end: str) -> None:
-        self.suction: Any = None
-        self.delivery: Any = None
-        own, gas = piston.gas.piston, piston.gas
-        card, head = own.chambers[end], end == "head_end"
-        self.owner = drive.name if piston.number == 0 else f"{drive.name}, {own.name}"
+        gas = piston.gas
+        name = gas.piston.name
+        card = gas.piston.chambers[end]
+        is_head = end == "head_end"
+        area = gas.areas[0] if is_head else gas.areas[1]
+        self.owner = drive.name if piston.number == 0 else f"{drive.name}, {name}"
         self.end = end.replace("_", " ")
         self.loaded = not (isinstance(card, Compressor) and card.unloaded)
-        self.figures: ValuesById = {"stroke_volume": gas.areas[0 if head else 1] * gas.stroke}
-        if isinstance(card, Compressor):
-            lift = 0.0 if gas.absolute else drive.machine.ambient
-            self.suction, self.delivery = card.suction + lift, card.delivery + lift
-            gases = [one for one in (own.gas, drive.machine.gas) if one]
-            work = gas.works[0 if head or gas.head is None else 1] / gas.repeats
-            self._add_figures(card, gases, drive.machine.speed, -work)
+        self.figures: ValuesById = {"stroke_volume": area * gas.stroke}
+        self.suction: Any = None
+        self.delivery: Any = None
+        if not isinstance(card, Compressor):
+            return
+        # absolute pressures
+        lift = 0.0 if gas.absolute else drive.machine.ambient
+        self.suction = card.suction + lift
+        self.delivery = card.delivery + lift
+        # the properties of the piston's gas come before those of the machine's
+        gases = [properties for properties in (gas.piston.gas, drive.machine.gas) if properties]
+        # there are works of the ends that there are; a turn is a share of the cycle
+        work = gas.works[0] if is_head or gas.head is None else gas.works[1]
+        self._add_figures(card, gases, drive.machine.speed, -(work / gas.repeats))
 
     def _add_figures(
         self, card: Compressor, gases: Sequence[Gas], speed: Number | None, work: Number
     ) -> None:
         """Add what follows from the card, from the first gas that has what is needed, and from the speed."""
-        found, ratio, n = self.figures, self.delivery / self.suction, card.exponent
+        figures = self.figures
+        ratio = self.delivery / self.suction
+        # η_v = 1 − ε₀ [(p_d/p_s)^(1/n) − 1], T₂ = T₁ (p_d/p_s)^((n − 1)/n)
+        efficiency: Number = 0.0
         if self.loaded:
-            found["volumetric_efficiency"] = 1 - card.clearance * (
-                ratio ** (1 / card.of_expansion) - 1
-            )
-            if gases:
-                found["discharge_temperature"] = gases[0].inlet_temperature * ratio ** ((n - 1) / n)
+            efficiency = 1 - card.clearance * (ratio ** (1 / card.of_expansion) - 1)
+            figures["volumetric_efficiency"] = efficiency
+        if self.loaded and gases:
+            n = card.exponent
+            figures["discharge_temperature"] = gases[0].inlet_temperature * ratio ** ((n - 1) / n)
         if speed is None:
             return
-        capacity = found.get("volumetric_efficiency", 0.0) * found["stroke_volume"] * speed
-        found["capacity"], found["stage_power"] = capacity, work * speed
+        # V̇ = η_v V_s n
+        capacity = efficiency * figures["stroke_volume"] * speed
+        figures["capacity"] = capacity
+        figures["stage_power"] = work * speed
+        # m = p_s V̇/(R T₁), and the same mass at normal conditions
         if gases:
             density = self.suction / gases[0].inlet_temperature
-            found["capacity_normal"] = density * capacity * (_NORMAL[1] / _NORMAL[0])
-            constants = [gase.gas_constant for gase in gases if gase.gas_constant is not None]
+            figures["capacity_normal"] = density * capacity * (_NORMAL[1] / _NORMAL[0])
+            constants = [gas.gas_constant for gas in gases if gas.gas_constant is not None]
             if constants:
-                found["mass_flow"] = density * capacity / constants[0]
-        kappas = [
-            gase.isentropic_exponent for gase in gases if gase.isentropic_exponent is not None
-        ]
+                figures["mass_flow"] = density * capacity / constants[0]
+        # N_is = κ/(κ − 1) p_s V̇ [(p_d/p_s)^((κ − 1)/κ) − 1]
+        kappas = [gas.isentropic_exponent for gas in gases if gas.isentropic_exponent is not None]
         if kappas:
             power = (kappas[0] - 1) / kappas[0]
-            head = np.expm1(power * np.log(ratio)) / power
-            found["isentropic_power"] = self.suction * capacity * head
+            bracket = np.expm1(power * np.log(ratio)) / power
+            figures["isentropic_power"] = self.suction * capacity * bracket
 
 
 _OF_ALL_ENDS = (
@@ -465,26 +538,34 @@ class CompressorStage(Results):
     def __init__(self, ends: Sequence[CompressorEnd]) -> None:
         self.name = self.part = ends[0].owner
         self.ends = tuple(ends)
-        self.suction, self.delivery = ends[0].suction, ends[0].delivery
+        self.suction = ends[0].suction
+        self.delivery = ends[0].delivery
 
     @cached_property
     def answers(self) -> ValuesById:
         """The key values; a stage all of whose ends are unloaded delivers nothing."""
-        every = [end.figures for end in self.ends]
+        figures = [end.figures for end in self.ends]
         loaded = [end.figures for end in self.ends if end.loaded]
-        found = {
-            id: sum(one[id] for one in every)
-            for id in _OF_ALL_ENDS
-            if all(id in one for one in every)
-        }
-        for id in _OF_LOADED_ENDS:  # means
-            if loaded and all(id in one for one in loaded):
-                swept = sum(one["stroke_volume"] for one in loaded)
-                found[id] = sum(one[id] * one["stroke_volume"] for one in loaded) / swept
-        if loaded and "isentropic_power" in found and some(found["stage_power"] > 0):
-            taken = where(found["stage_power"] > 0, found["stage_power"], math.nan)
-            found["isentropic_efficiency"] = found["isentropic_power"] / taken
-        return found
+        # sums over all ends
+        answers = ValuesById()
+        for id in _OF_ALL_ENDS:
+            if all(id in values for values in figures):
+                answers[id] = sum(values[id] for values in figures)
+        if not loaded:
+            return answers
+        # means over the volumes that the loaded ends displace
+        stroke_volume = sum(values["stroke_volume"] for values in loaded)
+        for id in _OF_LOADED_ENDS:
+            if all(id in values for values in loaded):
+                weighted = sum(values[id] * values["stroke_volume"] for values in loaded)
+                answers[id] = weighted / stroke_volume
+        # η_is where power is taken
+        if "isentropic_power" in answers:
+            takes_power = answers["stage_power"] > 0
+            if some(takes_power):
+                power = where(takes_power, answers["stage_power"], math.nan)
+                answers["isentropic_efficiency"] = answers["isentropic_power"] / power
+        return answers
 
 
 # the machine
@@ -498,24 +579,24 @@ class MachineDelivery:
     """
 
     def __init__(self, effort: TurningEffort) -> None:
-        self.machine, self.effort, self._count = effort.machine, effort, effort.count
-        driven = [(forces, list(driven_pistons(forces.drive))) for forces in effort.cylinders]
-        self._pumps = [
-            (forces, piston) for forces, pistons in driven for piston in pistons if piston.pumps
-        ]
-        ends = [
-            CompressorEnd(forces.drive, piston, end)
-            for forces, pistons in driven
-            for piston in pistons
-            for end, works in (("head_end", piston.head), ("crank_end", piston.crank))
-            if not piston.pumps
-            and (works or isinstance(piston.gas.piston.chambers.get(end), Compressor))
-        ]
+        self.machine = effort.machine
+        self.effort = effort
+        self._count = effort.count
+        # the pistons that pump, and the ends of those that compress
+        self._pumps = list[tuple[CylinderForces, DrivenPiston]]()
+        ends = list[CompressorEnd]()
+        for forces in effort.cylinders:
+            for piston in driven_pistons(forces.drive):
+                if piston.is_pump:
+                    self._pumps.append((forces, piston))
+                else:
+                    ends += _compressor_ends(forces.drive, piston)
         self.stages: tuple[CompressorStage, ...] = _staged(ends)
         if not (self._pumps or self.stages):
             raise UsageError(
-                f"{self.machine.name} delivers nothing: no piston is driven by the shaft; a pump has a 'constant' "
-                "pressure on each stroke, the higher one on compression, a compressor has 'compressor: {…}'"
+                f"{self.machine.name} delivers nothing: no piston is driven by the shaft; "
+                "a pump has a 'constant' pressure on each stroke, the higher one on compression, "
+                "a compressor has 'compressor: {…}'"
             )
 
     @cached_property
@@ -523,53 +604,86 @@ class MachineDelivery:
         """What all pumping pistons deliver together, over the angle of crank 1."""
         if not self._pumps:
             return None
+        # the states of the cylinders at the same angles, once for all pistons of one
         pieces = self.effort.pieces
-        states = {
-            id(forces): State.on(forces.drive, pieces.by_crank(position(forces)))
-            for forces, _ in self._pumps
-        }
-        rate = self._rate_of(pieces, [(states[id(forces)], one) for forces, one in self._pumps])
-        both = len(self._pumps) == 1 and self._pumps[0][1].head and self._pumps[0][1].crank
+        states: dict[int, State] = {}
+        for forces, _ in self._pumps:
+            if id(forces) not in states:
+                angles = pieces.by_crank(position(forces))
+                states[id(forces)] = State.on(forces.drive, angles)
+        rate = self._rate_of(
+            pieces, [(states[id(forces)], piston) for forces, piston in self._pumps]
+        )
+        # flows of the ends are those of a single piston
+        first = self._pumps[0][1]
+        is_double_acting = len(self._pumps) == 1 and first.head_delivers and first.crank_delivers
         return Delivery(
-            "whole machine", self.machine, pieces, self._count, rate, both, self.machine.pump
+            "whole machine",
+            self.machine,
+            pieces,
+            self._count,
+            rate,
+            is_double_acting,
+            self.machine.pump,
         )
 
     @cached_property
     def pistons(self) -> tuple[Delivery, ...]:
         """What each of several pumping pistons delivers, over the angle of its own crank; equal ones once."""
-        found = list[Delivery]()
-        firsts = {id(forces): group[0] for group in self.effort.groups for forces in group}
-        known: dict[tuple[int, int], Delivery] = {}
-        for forces, one in self._pumps if len(self._pumps) > 1 else ():
-            first, name = firsts[id(forces)], forces.drive.name
-            alike = id(first), one.number
-            if alike not in known:
-                rate = self._rate_of(first.pieces, [(first.samples, one)])
-                made = Delivery(
-                    "", self.machine, first.pieces, self._count, rate, one.head and one.crank
-                )
-                _ = made.answers, made.extremes_of("flow")  # once for all copies
-                known[alike] = made
-            found.append(copy(known[alike]))
-            found[-1].name = name if one.number == 0 else f"{name}, {one.gas.piston.name}"
-        return tuple(found)
+        if len(self._pumps) < 2:
+            return ()
+        # cylinders of a group are alike but for their crank angles: the first is computed for all
+        representatives = {id(forces): group[0] for group in self.effort.groups for forces in group}
+        computed: dict[tuple[int, int], Delivery] = {}
+        deliveries = list[Delivery]()
+        for forces, piston in self._pumps:
+            representative = representatives[id(forces)]
+            key = id(representative), piston.number
+            if key not in computed:
+                computed[key] = self._delivery_of(representative, piston)
+            delivery = copy(computed[key])
+            delivery.name = forces.drive.name
+            if piston.number > 0:
+                delivery.name = f"{forces.drive.name}, {piston.gas.piston.name}"
+            deliveries.append(delivery)
+        return tuple(deliveries)
+
+    def _delivery_of(self, forces: CylinderForces, piston: DrivenPiston) -> Delivery:
+        """Return what one pumping piston delivers, computed once for all its copies."""
+        rate = self._rate_of(forces.pieces, [(forces.samples, piston)])
+        is_double_acting = piston.head_delivers and piston.crank_delivers
+        delivery = Delivery("", self.machine, forces.pieces, self._count, rate, is_double_acting)
+        _ = delivery.answers, delivery.extremes_of("flow")
+        return delivery
 
     def _rate_of(
         self, pieces: Pieces, pistons: Sequence[tuple[State, DrivenPiston]]
     ) -> Callable[..., Array]:
         """Return what returns dV/dφ of these pistons together, less the slip; it takes the words of `_displaced`."""
-        share = 1 - (self.machine.pump.slip if self.machine.pump else 0.0)
+        slip = self.machine.pump.slip if self.machine.pump else 0.0
+        share = 1 - slip
 
-        def rate(**how: bool) -> Array:
-            each = [pieces.of(share) * _displaced(state, one, **how) for state, one in pistons]
-            whole = pieces.filled(sum(each))
-            lasting = (
-                unless_cancelled(pieces.largest(whole), sum(map(pieces.largest, each)), _CANCELLED)
-                != 0
-            )
-            return np.where(pieces.of(lasting), whole, 0.0)
+        def rate(**words: bool) -> Array:
+            terms = [
+                pieces.of(share) * _displaced(state, piston, **words) for state, piston in pistons
+            ]
+            rates = pieces.filled(sum(terms))
+            # rates of which the terms cancel at all angles are rounding
+            sizes = sum(map(pieces.largest, terms))
+            is_left = unless_cancelled(pieces.largest(rates), sizes, _CANCELLED) != 0
+            return np.where(pieces.of(is_left), rates, 0.0)
 
         return rate
+
+
+def _compressor_ends(drive: Drive, piston: DrivenPiston) -> Iterator[CompressorEnd]:
+    """Yield the ends of a piston that compress, or have the card of a compressor."""
+    for end, delivers in (
+        ("head_end", piston.head_delivers),
+        ("crank_end", piston.crank_delivers),
+    ):
+        if delivers or isinstance(piston.gas.piston.chambers.get(end), Compressor):
+            yield CompressorEnd(drive, piston, end)
 
 
 def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
@@ -577,20 +691,32 @@ def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
 
     Raises UsageError for many machines whose stages are not alike: they are computed one by one.
     """
+    # an end joins the first group with its pressures
     groups: list[list[CompressorEnd]] = []
     for end in ends:
-        group = next((group for group in groups if _are_of_one_stage(group[0], end)), None)
-        if group is None:
-            groups.append([end])
+        for group in groups:
+            if _are_of_one_stage(group[0], end):
+                group.append(end)
+                break
         else:
-            group.append(end)
+            groups.append([end])
     stages = [CompressorStage(group) for group in groups]
-    stages.sort(key=lambda one: math.inf if one.suction is None else float(np.mean(one.suction)))
-    for number, stage in enumerate((one for one in stages if one.suction is not None), 1):
-        stage.name = f"stage {number}"
+    stages.sort(key=_suction_of)
+    # stages with known pressures are numbered; all know their pistons
+    number = 0
     for stage in stages:
         stage.part = _part_of(stage.ends, ends)
+        if stage.suction is not None:
+            number += 1
+            stage.name = f"stage {number}"
     return tuple(stages)
+
+
+def _suction_of(stage: CompressorStage) -> float:
+    """Return the suction pressure of a stage in Pa, of many machines their mean; without one infinity."""
+    if stage.suction is None:
+        return math.inf
+    return float(np.mean(stage.suction))
 
 
 _SAME_PRESSURE = 1e-9
@@ -603,10 +729,10 @@ def _are_of_one_stage(end: CompressorEnd, other: CompressorEnd) -> bool:
         return end.suction is other.suction and end.owner == other.owner
     same_suction = np.abs(end.suction - other.suction) <= _SAME_PRESSURE * np.abs(end.suction)
     same_delivery = np.abs(end.delivery - other.delivery) <= _SAME_PRESSURE * np.abs(end.delivery)
-    same = np.ravel(same_suction & same_delivery)
-    if same.any() != same.all():
+    are_same = np.ravel(same_suction & same_delivery)
+    if are_same.any() != are_same.all():
         raise UsageError("the stages of these machines are not alike")
-    return bool(same.all())
+    return bool(are_same.all())
 
 
 def _part_of(of_stage: Sequence[CompressorEnd], ends: Sequence[CompressorEnd]) -> str:
