@@ -20,7 +20,7 @@ from kurbel.machine_file.reader import ROOT
 from kurbel.quantities import CHAPTERS, KEY_VALUES
 from kurbel.report.commands import COMMANDS, REPORTS
 from kurbel.solver.drive import any_of
-from representative import CONFIGS, case_of, shipped
+from representative import CONFIGS, case_of
 
 PACKAGE = Path(kurbel.__file__).parent
 
@@ -249,7 +249,9 @@ def test_of_a_plain_machine_the_core(loaded: Any, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", [*(row.word for row in REPORTS), "check"])
-@pytest.mark.parametrize("machine", shipped("waterworks", "diesel-trace"))
+@pytest.mark.parametrize(
+    "machine", [CONFIGS["waterworks"], CONFIGS["diesel-trace"]], ids=lambda file: file.stem
+)
 def test_a_run_loads_what_its_file_and_its_command_need(
     loaded: Any, machine: Path, command: str
 ) -> None:
