@@ -19,8 +19,12 @@ BRIEF = {
 }
 
 
+# these take minutes even at their shortest, and are run by hand
+LONG = {"metamorphic.py", "stiff_scenes.py"}
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sorted(file.name for file in FOLDER.glob("*.py")))
+@pytest.mark.parametrize("name", sorted({file.name for file in FOLDER.glob("*.py")} - LONG))
 def test_benchmark_runs(name: str) -> None:
     command = [sys.executable, str(FOLDER / name), *BRIEF.get(name, [])]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
