@@ -21,7 +21,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 
 from test_torsion import at_random, eigenvalues
 
-from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
+from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftSegment
 from kurbel.solver.chapters.chain import Chain, Modes
 from kurbel.solver.chapters.torsion import Excitation, Vibration
 
@@ -43,8 +43,12 @@ def whole(masses: int = 30, orders: int = 48, speeds: int = 200) -> Vibration:
         ShaftMass(f"mass {i}", float(j), damping=2.0)
         for i, j in enumerate(draw.uniform(0.5, 2, masses))
     )
-    pieces = (ShaftPiece(float(k), 1.0, 0.01) for k in draw.uniform(1e5, 1e6, masses - 1))
-    line = ShaftLine(tuple(names), tuple(pieces))
+    stiffnesses = draw.uniform(1e5, 1e6, masses - 1)
+    segments = (
+        ShaftSegment(float(stiffness), 1.0, 0.01, before=place, behind=place + 1)
+        for place, stiffness in enumerate(stiffnesses)
+    )
+    line = ShaftLine(tuple(names), tuple(segments))
     gas = np.zeros((masses, orders), dtype=complex)
     gas[2:8] = draw.normal(size=(6, orders)) + 1j * draw.normal(size=(6, orders))
     nothing = np.zeros(masses)

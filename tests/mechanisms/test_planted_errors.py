@@ -24,7 +24,7 @@ SLIPS = [
     ("scotch_yoke", "radial", "angle.cos", "angle.sin"),
     ("scotch_yoke", "guide_pair_factor", "angle.sin", "angle.cos"),
     ("slider_crank", "bending_arm", "self.gland + self.coordinate", "self.gland - self.coordinate"),
-    ("slotted_lever", "_lever_at", "bend = -crank", "bend = crank"),
+    ("slotted_lever", "_lever_at", "-crank * frame * (gap", "crank * frame * (gap"),
     ("slotted_lever", "pin_force_factor", "/ lever.reach", "* lever.reach"),
     ("slotted_lever", "radial", "-force", "force"),
     ("slotted_lever", "radial", "angle.sin", "angle.cos"),
