@@ -323,7 +323,7 @@ class Machine(Record):
                     if cylinder.crank_position is None
                     else cylinder,
                 )
-            else:
+            elif cylinders or firing_order:
                 from kurbel.machine.several import in_order
 
                 given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
