@@ -332,14 +332,15 @@ ZEROED_UNITS = {
 
 
 @cache
-def _units_of(kind: str) -> dict[str, UnitFactor]:
-    """Return the units of a kind by name."""
+def _names_of(kind: str) -> tuple[str, ...]:
+    """Return the names of the units of a kind."""
     names: list[str] = []
     for listed in KINDS[kind].units.split("; "):
         first, sign, second, *_ = *re.split(r" ([*/]) ", listed), "", ""
         joint = sign.replace("*", " ")
-        names += [one + joint + other for one in first.split(", ") for other in second.split(", ")]
-    return {name: _factor(name, kind) for name in names}
+        for unit in first.split(", "):
+            names += [unit + joint + other for other in second.split(", ")]
+    return tuple(dict.fromkeys(names))
 
 
 def _factor(unit: str, kind: str) -> UnitFactor:
@@ -351,7 +352,13 @@ def _factor(unit: str, kind: str) -> UnitFactor:
     up = down = 1.0
     for stroke, text in re.findall(r"(/?)([^ /]+)", re.sub("(long|short) ", r"\1_", unit)):
         base, power = re.findall(r"^(.*?\D|1)(-?\d)?$", text)[0]
-        more, less = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS[base]
+        factor = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS.get(base)
+        if factor is None:
+            raise LookupError(
+                f"the unit '{base}' in {unit} of the kind {kind} has no factor: add its multiplier and divisor "
+                "to _FACTORS of kurbel.declared.units, or take it out of KINDS"
+            )
+        more, less = factor
         times = int(power or 1)
         if (times < 0) != bool(stroke):
             more, less = less, more
@@ -385,10 +392,11 @@ def unit_factor(unit: str, kind: str) -> UnitFactor:
 
     Raises UnitError with the known units and, where the unit is one of another kind, that kind.
     """
-    known, name = _units_of(kind), _normal(unit)
+    known = _names_of(kind)
+    name = _normal(unit)
     if name in known:
-        return known[name]
-    names = ", ".join([*known][:8]) + (", …" if len(known) > 8 else "")
+        return _factor(name, kind)
+    names = ", ".join(known[:8]) + (", …" if len(known) > 8 else "")
     raise UnitError(
         f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {names}){unit_hint(name, kind)}"
     )
@@ -505,7 +513,7 @@ def kinds() -> tuple[str, ...]:
 
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
-    return (*_units_of(kind), *(ZEROED_UNITS if kind == "pressure" else ()))
+    return (*_names_of(kind), *(ZEROED_UNITS if kind == "pressure" else ()))
 
 
 def listed_units(kind: str) -> tuple[str, ...]:

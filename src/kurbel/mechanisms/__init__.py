@@ -7,7 +7,6 @@ crank angle has. `Mechanism` lists what a new one must supply.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
@@ -24,7 +23,6 @@ ColumnFactor = Callable[[Any, CrankAngle], Any]
 """Takes a mechanism and a crank angle, and returns what the formula of a column has besides ω and a force."""
 
 
-@dataclass(frozen=True, eq=False)
 class Offer:
     """A column that only some mechanisms have, with its formula.
 
@@ -34,11 +32,19 @@ class Offer:
     results of the command; where it is true, the column says nothing new there.
     """
 
-    quantity: Quantity
-    factor: ColumnFactor
-    omega: int = 0
-    force: Formula | None = None
-    unless: ResultCondition | None = None
+    def __init__(
+        self,
+        quantity: Quantity,
+        factor: ColumnFactor,
+        omega: int = 0,
+        force: Formula | None = None,
+        unless: ResultCondition | None = None,
+    ) -> None:
+        self.quantity = quantity
+        self.factor = factor
+        self.omega = omega
+        self.force = force
+        self.unless = unless
 
     def of(self, state: Any) -> Array | None:
         """Return the column of the state of a cylinder at crank angles (n,) in SI; None where it is not known."""
@@ -89,7 +95,6 @@ def requested_column(
     )
 
 
-@dataclass(frozen=True, eq=False)
 class KeyOffer:
     """A key value that only some mechanisms have, with its formula.
 
@@ -97,9 +102,12 @@ class KeyOffer:
     bound: largest value that the sources permit, in SI; a larger one gives a warning.
     """
 
-    quantity: Quantity
-    value: Callable[[Any, Any], Any]
-    bound: float | None = None
+    def __init__(
+        self, quantity: Quantity, value: Callable[[Any, Any], Any], bound: float | None = None
+    ) -> None:
+        self.quantity = quantity
+        self.value = value
+        self.bound = bound
 
     def of(self, results: Any) -> Any:
         """Return the key value from the results of its command, which have the mechanism."""
@@ -131,8 +139,7 @@ Position = tuple[Any, Any]
 SHAFT, PIN = "shaft", "pin"
 
 
-@dataclass(frozen=True, eq=False)
-class Sketch:
+class Sketch(NamedTuple):
     """What is drawn of a mechanism at crank angles, to scale.
 
     joints: places by name, the shaft and the crank pin among them; links: stiff members, each the joints it runs

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.numerals import NUMBER, familiar, keyboard_text
@@ -36,8 +36,7 @@ class Bound(float):
         return bound
 
 
-@dataclass(frozen=True, eq=False)
-class Expected:
+class Expected(NamedTuple):
     """The smallest and the largest value that meet an expectation, in the base; unit, text and name as written."""
 
     low: float
@@ -104,7 +103,7 @@ class Figures(Form):
                 continue
             figure = self.figure_of(known[ids[0]]).read(reading, written, (*path, name))
             if isinstance(figure, Expected):
-                figure = replace(figure, name=name)
+                figure = figure._replace(name=name)
             found[id] = (
                 Bound(figure, written_unit(str(written)), name)
                 if isinstance(figure, float)
