@@ -172,6 +172,14 @@ class Sketch(NamedTuple):
         return cls({SHAFT: (0.0, 0.0), PIN: pin, **joints}, ((SHAFT, PIN), *links), fixed, **more)
 
 
+class RamLever(NamedTuple):
+    """A slotted lever whose end moves a ram: radius of the crank, distance of its pivot, and its length, in m."""
+
+    crank: float
+    frame: float
+    length: float
+
+
 class Mechanism(Record, ABC):
     """What every mechanism supplies. It serves forces, work and torque through these alone:
 
@@ -186,7 +194,7 @@ class Mechanism(Record, ABC):
     override: `crank_angles_at`, the inverse of `coordinate`; the connecting rod, the radial force; `sketch`, what is
     drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a
     coupler) they add as columns in OFFERS and key values in KEY_OFFERS. No other module tests for the class of a
-    mechanism.
+    mechanism, but for the references of `kurbel accuracy`, which have other formulas for each.
     """
 
     name: ClassVar[str]
@@ -196,6 +204,8 @@ class Mechanism(Record, ABC):
     """Whether a block on the crank pin and two guides may rub, as those of a Scotch yoke."""
     guided: ClassVar[bool] = True
     """Whether the side force N rests on a guide; otherwise it bends the piston rod."""
+    is_crank_drive: ClassVar[bool] = False
+    """Whether the crank pin moves the output itself, or through one connecting rod."""
     has_rod: ClassVar[bool] = False
     """Whether there is a connecting rod on the crank, with rod force S and side force N."""
     far_pin: ClassVar[str] = "crosshead_pin"
@@ -240,6 +250,11 @@ class Mechanism(Record, ABC):
 
     def guide_pair_factor(self, angle: CrankAngle) -> Number | None:
         """Return the force on each of two such guides over P, of the shape of the angle; None without them."""
+        return None
+
+    @property
+    def ram_lever(self) -> RamLever | None:
+        """The slotted lever whose end moves the ram without a link; None where there is none."""
         return None
 
     @abstractmethod
