@@ -117,8 +117,13 @@ def _tables(report: Report, look: Look) -> Iterator[Line]:
         yield from blocks(side, shown.columns[len(side) :], look)
 
 
-def fitting(report: Report, look: Look, first: Sequence[str]) -> Iterator[Line]:
-    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
+def fitting(
+    report: Report, look: Look, first: Sequence[str], named: Sequence[str] = ()
+) -> Iterator[Line]:
+    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines.
+
+    first: ids of the selection; named: those of its key values that stay where even these do not fit.
+    """
     lines, most = page_lines(report, look), terminal_size()[1]
     begin = list(islice(lines, most)) if sys.stdout.isatty() else []
     if len(begin) < most:
@@ -129,7 +134,11 @@ def fitting(report: Report, look: Look, first: Sequence[str]) -> Iterator[Line]:
     # the prompt takes a line, too; a table over the angle must not push key values off the screen
     if len(first_page) < most or not any(part.key_values for part in selected.all_parts):
         return iter(first_page)
-    return selection(selected.changed(lambda part: part._replace(columns=())), look)
+    without_table = selected.changed(lambda part: part._replace(columns=()))
+    key_value_page = [*selection(without_table, look)]
+    if len(key_value_page) < most or not named:
+        return iter(key_value_page)
+    return selection(first_selection(report, named, across, rows=most // 6), look)
 
 
 # a line for each row
