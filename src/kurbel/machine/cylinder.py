@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.arrays import Number, Truth
+from kurbel.arrays import Truth
 from kurbel.crank_angle import CYCLES, CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.record import (
@@ -237,7 +237,7 @@ class Cylinder(Record):
                 )
 
 
-def crank_lag(cylinder: Cylinder, first: Cylinder) -> Number:
+def crank_lag(cylinder: Cylinder, first: Cylinder) -> float:
     """Return δ = β + φ_i,1 − φ_i in degrees, by which the own crank angle of a cylinder lags that of the first.
 
     β counts from inner dead centre to inner dead centre, the crank angle from where the pin passes the stroke line.
@@ -247,7 +247,7 @@ def crank_lag(cylinder: Cylinder, first: Cylinder) -> Number:
     return cylinder.crank_position + (first_inner - inner)
 
 
-def pin_lag(cylinder: Cylinder, first: Cylinder) -> Number:
+def pin_lag(cylinder: Cylinder, first: Cylinder) -> float:
     """Return ζ = δ − γ in degrees, by which the crank pin of a cylinder lags that of the first on the shaft."""
     return crank_lag(cylinder, first) - cylinder.bank_angle
 
