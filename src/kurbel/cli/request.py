@@ -163,4 +163,5 @@ def print_report(
     selected = any(
         context.get_parameter_source(option) is ParameterSource.COMMANDLINE for option in options
     )
-    output.write(report, None if selected else COMMANDS[command].first.split())
+    shown = COMMANDS[command]
+    output.write(report, None if selected else shown.first.split(), shown.named.split())

@@ -124,20 +124,30 @@ def _without_repetition(names: TextColumn) -> TextColumn:
     return names._replace(cells=cells)
 
 
-def fitting(report: Report, look: Look, first: Sequence[str]) -> Iterator[Line]:
-    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
+def fitting(
+    report: Report, look: Look, first: Sequence[str], named: Sequence[str] = ()
+) -> Iterator[Line]:
+    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines.
+
+    first: ids of the selection; named: those of its key values that stay where even these do not fit.
+    """
     lines = page_lines(report, look)
     _, rows = terminal_size()
     beginning = list(islice(lines, rows)) if sys.stdout.isatty() else []
     if len(beginning) < rows:
         return chain(beginning, lines)
+
+    # the prompt takes a line, too; a table over the angle must not push key values off the screen
     across = max(((look.width or 80) - _SIDE) // _CELL, 4)
     selected = first_selection(report, first, across, rows=rows // 6)
-    first_page = list(selection(selected, look))
-    # the prompt takes a line, too; a table over the angle must not push key values off the screen
-    if len(first_page) < rows or not any(part.key_values for part in selected.all_parts):
-        return iter(first_page)
-    return selection(selected.changed(lambda part: part._replace(columns=())), look)
+    page = list(selection(selected, look))
+    if len(page) < rows or not any(part.key_values for part in selected.all_parts):
+        return iter(page)
+    without_table = selected.changed(lambda part: part._replace(columns=()))
+    page = list(selection(without_table, look))
+    if len(page) < rows or not named:
+        return iter(page)
+    return selection(first_selection(report, named, across, rows=rows // 6), look)
 
 
 # a line for each row
