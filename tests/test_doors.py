@@ -72,7 +72,10 @@ CHECKED = {
 """Module that a check imports to say what it has to say -> the keys of which a file has one, none for every check."""
 
 
-_MECHANISMS = ("mechanisms.four_bar", "mechanisms.parallel_crank", "mechanisms.scotch_yoke") + (
+_MECHANISMS = (
+    "mechanisms.four_bar",
+    "mechanisms.parallel_crank",
+    "mechanisms.scotch_yoke",
     "mechanisms.slotted_lever",
 )
 """Those of other machines than engines with a connecting rod."""
