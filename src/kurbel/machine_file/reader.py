@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from kurbel.declared.forms.structures import Maker, ReadMapping, RecordForm, key_places
+from kurbel.declared.forms.making import Maker
+from kurbel.declared.forms.structures import ReadMapping, RecordForm, key_places
 from kurbel.declared.numerals import WRITTEN, familiar
 from kurbel.declared.reading import (
     REFUSED,

@@ -1,20 +1,16 @@
 """Forms of mappings and lists: records (also inline), lists, alternatives, words that choose further keys.
 
 A file is read in two passes: first, forms turn texts into numbers, words and lists, and each mapping into a `ReadMapping`;
-then `Maker` makes records of these.
+then `Maker` (`making`) makes records of these.
 """
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NoReturn, Union
 
-import numpy as np
-
-from kurbel.arrays import Indivisible, Truth
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
-from kurbel.declared.keys import TOO_EXTREME, Key, Keys, Record, required
+from kurbel.declared.keys import Key, Keys, Record, required
 from kurbel.declared.numerals import NUMBER, keyboard_text
 from kurbel.declared.reading import (
     REFUSED,
@@ -23,15 +19,13 @@ from kurbel.declared.reading import (
     Reading,
     Tree,
     glued_hint,
-    has_refused,
     is_nothing,
     node_kind,
     text_in_one_line,
 )
 from kurbel.declared.units import MOST_ITEMS
-from kurbel.errors import NotANumber, Path, RuleError, path_text, refused
+from kurbel.errors import Path, RuleError, path_text, refused
 from kurbel.near_words import did_you_mean, near
-from kurbel.numerics.arithmetic import is_number
 
 Door = Callable[[], type[Record]]
 """A function with one import inside, that of the record it returns; it is called when the first mapping is read."""
@@ -282,92 +276,6 @@ def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:
     word_without_key = "card" if isinstance(form, Keyed) else word
     for name, inner in form.parts:
         yield from records(inner, name or word_without_key)
-
-
-def too_extreme(record: object, values: Mapping[str, object]) -> Truth:
-    """Return whether a number of a record has overflowed, for many machines as an array (machines,).
-
-    values: of its keys. A number may be infinite if one of these is, as `rod: infinite`, or by default.
-    """
-    defaults = [vars(type(record)).get(name) for name in vars(record)]
-    numbers = filter(is_number, (*values.values(), *defaults))
-    may_be_infinite = any(number == math.inf for number in numbers)
-    has_arrays = not isinstance(record, Indivisible)
-    is_extreme: Truth = False
-    for value in vars(record).values():
-        is_array = has_arrays and isinstance(value, np.ndarray)
-        if is_number(value) or is_array:
-            is_allowed = np.isfinite(value) | (may_be_infinite & (value == math.inf))
-            is_extreme = is_extreme | ~is_allowed
-    return is_extreme
-
-
-class Maker:
-    """The second pass: makes records of what was read, and reports what is wrong with them.
-
-    broken: which of many machines, whose numbers are arrays (count,), break a rule.
-    """
-
-    def __init__(self, reading: Reading, count: int = 0) -> None:
-        self.reading = reading
-        self.broken = np.zeros(count, dtype=bool)
-
-    def made(self, value: object) -> Any:
-        """Return the record, tuple or value that was read; REFUSED after reporting what is wrong with it."""
-        if isinstance(value, tuple):
-            has_mapping = any(isinstance(item, ReadMapping) for item in value)
-            return tuple(map(self.made, value)) if has_mapping else value
-        if not isinstance(value, ReadMapping):
-            return value
-        values = {name: self.made(node) for name, node in value.values.items()}
-        try:
-            value.made = self._record(value.form, values)
-        except ArithmeticError:
-            value.made = self.reading.fault(value.path, TOO_EXTREME)
-        except RuleError as error:
-            flattened = value.form.flattened(error, value.mapping)
-            value.made = self.reading.refuse(value.path, flattened)
-        return value.made
-
-    def _record(self, form: RecordForm, values: dict[str, object]) -> object:
-        """Return the record of values by key; REFUSED if one could not be read, after judging the others.
-
-        For that the rules get `Form.unread` in its place, a nan, which breaks no rule.
-        """
-        # what could not be read, with what is in its place
-        unread: dict[str, object] = {}
-        for name, value in values.items():
-            has_refused_item = isinstance(value, tuple) and has_refused(value)
-            if value is REFUSED or has_refused_item:
-                unread[name] = form.keys[name].form.unread
-        if None in unread.values():  # nothing can be in place of a word or a mapping
-            raise RuleError(*form.record.faults_of_some(values))
-        # the record, which checks itself
-        try:
-            record = form.record.from_keys(**(values | unread))
-        except RuleError as error:
-            faults = error.faults
-            if unread:
-                faults = tuple(fault for fault in faults if not isinstance(fault, NotANumber))
-            raise RuleError(*faults) from None
-        except (ArithmeticError, ValueError):
-            if not unread:  # else a formula takes no nan
-                raise
-        if unread:
-            return REFUSED
-        # its numbers and, for many machines, which of these break a rule
-        is_extreme = too_extreme(record, values)
-        if len(self.broken) == 0:
-            if is_extreme:
-                refused(TOO_EXTREME)
-            return record
-        self.broken = self.broken | is_extreme
-        for rule in form.record.rules_of_keys(values):
-            self.broken = np.logical_or(self.broken, rule.broken)
-        if isinstance(record, Record):
-            for rule in record.rules():
-                self.broken = np.logical_or(self.broken, rule.broken)
-        return record
 
 
 class Variant(Choice):
