@@ -18,6 +18,7 @@ from kurbel.near_words import did_you_mean
 from kurbel.render import Look
 from kurbel.render.output import silence, terminal_size
 from kurbel.report.commands import BROKEN, COMMANDS, NO_SOLUTION
+from kurbel.tables.sources import legend
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -48,6 +49,13 @@ def exit_statuses(command: str = "") -> str:
     return "Exit status: " + "; ".join(f"{status} {_MEANINGS[status]}" for status in listed)
 
 
+def books_of(command: click.Command) -> str:
+    """Return the books to which the help of a command refers, in ASCII; '' if it refers to none."""
+    texts = [command.help or ""]
+    texts += [option.help or "" for option in command.params if isinstance(option, click.Option)]
+    return Look(encoding="ascii").text(legend(texts))
+
+
 class Kurbel(click.Group):
     """The group, which ends every run with a message instead of a traceback."""
 
@@ -69,7 +77,8 @@ class Kurbel(click.Group):
     def add_command(self, cmd: click.Command, name: str | None = None) -> None:
         super().add_command(cmd, name)
         assert cmd.name
-        cmd.short_help, cmd.epilog = COMMANDS[cmd.name].summary, exit_statuses(cmd.name)
+        cmd.short_help = COMMANDS[cmd.name].summary
+        cmd.epilog = "\n\n".join(filter(None, (books_of(cmd), exit_statuses(cmd.name))))
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -54,11 +54,7 @@ def mechanism(source: Source) -> Iterator[Panel]:
     if source.angles is None:
         # it rests where the tangential force of the first cylinder is largest
         largest = Source(first, None).extreme("T_max")
-        rest = (
-            largest.degrees + first.drive.cylinder.crank_position * (not alone)
-            if largest
-            else _STILL
-        )
+        rest = largest.degrees + first.drive.lag * (not alone) if largest else _STILL
         turning = np.arange(MOMENTS_PER_TURN * case.machine.revolutions) * 360.0 / MOMENTS_PER_TURN
         moments = np.append(rest, turning)[None]
     for degrees in moments:
@@ -167,7 +163,7 @@ def _from_the_side(
         side += [body.seen(0.0 if level else 90.0, moved=-1j * turn * place) for body in bodies]
         above, below = one.outer_end + em, -1.5 * one.R - (2.5 if level else 0.8) * em
         captions.append(Caption(str(number), turn * complex(above, -place), 0.4 * em, strong=True))
-        lag = f"{one.cylinder.crank_position % 360:.4g}°"
+        lag = f"{one.results.drive.lag % 360:.4g}°"
         captions.append(Caption(lag, turn * complex(below, -place), 0.4 * em * len(lag)))
 
     left, right, _, top = _bounds(side)

@@ -71,7 +71,7 @@ class Train:
             results.drive.cylinder,
             results.drive.mechanism,
         )
-        own = degrees if alone else degrees - self.cylinder.crank_position
+        own = degrees if alone else degrees - results.drive.lag
         self.cycle = own[: 1 + MOMENTS_PER_TURN * CYCLES[machine.cycle_of(self.cylinder)]]
         self.motion = own[: 1 + MOMENTS_PER_TURN]
         self.angle = 0.0 if alone else self.cylinder.bank_angle

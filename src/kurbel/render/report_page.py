@@ -24,6 +24,7 @@ from kurbel.render.style import LONG_REPORT, MOVING, PAIRS, PICTURE, PICTURE_COL
 from kurbel.render.svg import svg
 from kurbel.render.text import DIGITS
 from kurbel.render.text_tables import TextColumn, TextTable, key_value_table, part_name, place_table
+from kurbel.tables.sources import legend, texts_of
 from kurbel.tables.tables import PlaceTable, notes_for_people
 
 _CLOSE = 5
@@ -57,6 +58,8 @@ def _parts(long: Document, out: Html, date: str) -> Iterator[str]:
             yield from _item(item, out)
         yield "</section>\n"
     yield f"<footer>\n<p>{out.words(date)}, kurbel {__version__}</p>\n"
+    if books := legend(_texts_of(long)):
+        yield f"<p>{out.prose(books)}</p>\n"
     for made_from in long.provenance:
         files = [
             f"{one.file}: SHA-256 {sha256_of(one) or 'not known, the file is gone'}"
@@ -66,6 +69,21 @@ def _parts(long: Document, out: Html, date: str) -> Iterator[str]:
         files += [f"{name} {version}" for name, version in made_from.versions.items()]
         yield from listed("Made from", files, out)
     yield "</footer>\n"
+
+
+def _texts_of(long: Document) -> Iterator[str]:
+    """Yield the texts of a long report that may refer to a book: those of its answers, notices and pictures."""
+    for item in (*long.summary, *(item for section in long.sections for item in section.items)):
+        if isinstance(item, ReportAnswers):
+            yield from texts_of(item.report)
+        elif isinstance(item, Grid):
+            yield from (cell for row in item.rows for cell in row if isinstance(cell, str))
+        elif isinstance(item, (Notice, Picture)):
+            yield item.text
+        elif isinstance(item, Pair):
+            yield from (picture.text for picture in item if picture)
+        elif isinstance(item, str):
+            yield item
 
 
 def _item(item: SectionItem, out: Html) -> Iterator[str]:
