@@ -44,6 +44,7 @@ NEEDS = {
     "solver.ideal_process": {"steam", "compressor", "otto", "diesel"},
     "solver.indicated": {"trace"},
     "solver.shaft": {"crankshaft"},
+    "solver.total_work": {"cylinders", "tandem"},
     "traces.pressure": {"trace"},
     "traces.checks": {"trace"},
     "solver.chapters.coupling": {"coupling"},

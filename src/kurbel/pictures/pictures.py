@@ -448,7 +448,8 @@ def _sources(
     else:
         for one in wanted if command == "forces" else ():
             one.refuse_locking()
-        for equal in equal_parts(subjects_of(case, command), command):
+        parts = [subject for subject in subjects_of(case, command) if not subject.whole]
+        for equal in equal_parts(parts, command):
             named = [
                 one
                 for one in equal

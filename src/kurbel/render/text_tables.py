@@ -70,17 +70,47 @@ def sheets(
         ]
         bands = []
         for part in alike:
-            scaled = [
-                (one, digit_scale((one.size,) if one.size else one.values, look.digits))
-                for one in part.columns[1:]
-            ]
-            bands.append(
-                (
-                    part_name(report, part, look),
-                    [_scaled(one, scale, look, pad) for one, scale in scaled],
-                )
-            )
+            curves = [_curve(column, look, pad) for column in part.columns[1:]]
+            bands.append((part_name(report, part, look), curves))
         yield heads, bands
+
+
+def _curve(column: Column, look: Look, pad: str) -> TextColumn:
+    """Return a column over the crank angle at one scale, which has more decimals if a value would be printed as 0.0.
+
+    A value that is too small for that, next to a zero of the curve, has its own power of ten.
+    """
+    column = _without_rounding(column, (column.size, *column.values))
+    scale = digit_scale(column.values, look.digits)
+    smallest = min((abs(value) for value in column.values if value), default=0.0)
+    finer = _visible_scale(smallest, scale) if smallest else scale
+    if finer is not None:
+        return _scaled(column, finer, look, pad)
+    shown = _scaled(column, scale, look, pad)
+    cells = list(shown.cells)
+    for row, value in enumerate(column.values):
+        if value and float(cell(value, scale)) == 0:
+            number = look.counted(*single(value / 10.0**scale.exponent, look.digits, _FEW_DIGITS))
+            cells[row] = look.number(number) + pad
+    return shown._replace(cells=cells)
+
+
+def _without_rounding(column: Column, sharing: Sequence[CellValue]) -> Column:
+    """Return a column with zeros in the place of rounding errors, which are relative to values of the same unit."""
+    largest = max((abs(value) for value in sharing if value is not None), default=0.0)
+    values = [
+        0.0 if value and abs(value) <= _ROUNDING * largest else value for value in column.values
+    ]
+    return column._replace(values=values)
+
+
+def _visible_scale(smallest: float, scale: Scale) -> Scale | None:
+    """Return the scale, or one with as many more decimals as the smallest value needs; None if these are too many."""
+    for more in range(_MORE_DECIMALS + 1):
+        finer = scale._replace(decimals=scale.decimals + more)
+        if float(cell(smallest, finer)) > 0:
+            return finer
+    return None
 
 
 def _scaled(
@@ -147,25 +177,21 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
 
 _ROUNDING = 1e-12
 """Values below this, relative to the largest of their unit, are rounding errors of a zero."""
+_FEW_DIGITS = 2
+"""Of a value next to a zero of its curve."""
 _MORE_DECIMALS = 2
 """So many more than the shared scale has are printed for a small value, before values get powers of ten."""
 
 
 def _visible(column: Column, sharing: Sequence[CellValue], look: Look, missing: str) -> TextColumn:
     """Return a column at the scale of all values that share its unit, or finer, so that none is printed as 0.0."""
-    shared = digit_scale(sharing, look.digits)
-    largest = max((abs(value) for value in sharing if value is not None), default=0.0)
-    values = [
-        0.0 if value and abs(value) <= _ROUNDING * largest else value for value in column.values
-    ]
-    column = column._replace(values=values)
-    smallest = min((abs(value) for value in values if value), default=largest)
-    for more in range(_MORE_DECIMALS + 1):
-        scale = shared._replace(decimals=shared.decimals + more)
-        is_visible = not smallest or float(cell(smallest, scale)) > 0
-        if is_visible:
-            return _scaled(column, scale, look, missing=missing)
-    return _each_scaled(column, DIGITS, look, missing)
+    column = _without_rounding(column, sharing)
+    scale = digit_scale(sharing, look.digits)
+    smallest = min((abs(value) for value in column.values if value), default=0.0)
+    finer = _visible_scale(smallest, scale) if smallest else scale
+    if finer is None:
+        return _each_scaled(column, DIGITS, look, missing)
+    return _scaled(column, finer, look, missing=missing)
 
 
 def _each_scaled(column: Column, digits: int, look: Look, missing: str) -> TextColumn:
