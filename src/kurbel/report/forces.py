@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from kurbel.errors import UsageError
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.tables.frame import Frame, Functions, PlaceRow, Places, Subject
+from kurbel.tables.frame import Frame, Functions, Subject
+from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
 
 if TYPE_CHECKING:
