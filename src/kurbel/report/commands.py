@@ -57,8 +57,11 @@ def subjects_of(case: "Case", command: str, pistons: bool = False) -> "list[Subj
     pistons: also each piston of a rod that has several. Raises UsageError if the machine has no such results,
     NoSolutionError if it jams, stalls, or vibrates without limit.
     """
-    found = COMMANDS[command].functions.subjects(case)
-    return [*found, *(piston for one in found for piston in one.pistons)] if pistons else found
+    subjects = list(COMMANDS[command].functions.subjects(case))
+    if pistons:
+        for subject in tuple(subjects):
+            subjects += subject.pistons
+    return subjects
 
 
 def report_of(case: "Case", frame: "Frame") -> "Report":
@@ -280,5 +283,5 @@ _ROWS = (
 )
 COMMANDS = {row.word: row for row in _ROWS}
 """By its word, in the order in which `kurbel --help` lists them."""
-REPORTS = sorted((row for row in _ROWS if row.of), key=lambda one: one.section)
+REPORTS = sorted((row for row in _ROWS if row.of), key=lambda row: row.section)
 """Those that report on a machine, in the order of the whole report."""
