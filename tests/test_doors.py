@@ -33,7 +33,7 @@ CORE = {
     "solver solver.case solver.chambers solver.cycle solver.drive solver.figures solver.forces solver.gas",
     "solver.motion solver.newton solver.rod_load solver.state solver.vector",
     "report report.commands report.forces",
-    "tables tables.frame tables.named_values tables.shown tables.sources tables.tables",
+    "tables tables.frame tables.named_values tables.shown tables.tables",
     "render render.csv_text render.formats render.output render.text",
 }
 """What `kurbel motion -f csv` of a crank with its rod needs of the trades. Whoever adds a module here adds it to the
@@ -47,6 +47,7 @@ NEEDS = {
     "solver.ideal_process": {"steam", "compressor", "otto", "diesel"},
     "solver.indicated": {"trace"},
     "solver.shaft": {"crankshaft"},
+    "solver.total_work": {"cylinders", "tandem"},
     "solver.valve": {"valve"},
     "traces.pressure": {"trace"},
     "traces.checks": {"trace"},

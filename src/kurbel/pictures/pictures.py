@@ -471,7 +471,8 @@ def _sources_of_parts(
                 forces.refuse_locking()
     are_bearings = command == "bearings"
     are_several = are_bearings or len(case.cylinders) > 1
-    for group in equal_parts(subjects_of(case, command), command):
+    parts = [subject for subject in subjects_of(case, command) if not subject.whole]
+    for group in equal_parts(parts, command):
         chosen = [subject for subject in group if are_bearings or name in (None, subject.name)]
         if chosen:
             names = together([subject.name for subject in chosen]) if are_several else ""
