@@ -29,6 +29,7 @@ from kurbel.accuracy.methods import Found, Number, by_gauss, integrals, merged, 
 from kurbel.accuracy.valves import events_of
 from kurbel.arrays import Array
 from kurbel.machine import CYCLES, Cylinder, Machine
+from kurbel.machine.cylinder import crank_lag
 from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.parts import Friction, GasOnRings, Piston
 from kurbel.machine.turning import Swing
@@ -523,7 +524,7 @@ class TextbookMachine:
     def __init__(self, machine: Machine, quantity: str) -> None:
         members = taking_part(machine, quantity)
         self.cylinders = [
-            (TextbookCylinder(machine, cylinder), mpf(cylinder.crank_position))
+            (TextbookCylinder(machine, cylinder), mpf(crank_lag(cylinder, machine.cylinders[0])))
             for cylinder in members
         ]
         turns = machine.revolutions if quantity == "ΔE" else self.cylinders[0][0].turns

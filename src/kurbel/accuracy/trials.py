@@ -197,7 +197,8 @@ def rival(
     cylinders = []
     for cylinder, share in zip(taking_part(machine, quantity), book.shares):
         floats = Share(float(share.whole), float(share.of_driving))
-        cylinders.append((CylinderForces(machine, cylinder).at, cylinder.crank_position, floats))
+        forces = CylinderForces(machine, cylinder)
+        cylinders.append((forces.at, forces.drive.lag, floats))
     diagrams = [(in_floats(torque), factor) for torque, factor in book.diagrams]
     function = partial(needed, quantity, Addends(cylinders, diagrams))
     return method(quantity, function, book.edges.astype(float), count)

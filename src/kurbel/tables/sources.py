@@ -1,9 +1,13 @@
 """The books that letters before equations and pages refer to, as in (R 290) or (D 7)."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from kurbel.tables.tables import Report
+if TYPE_CHECKING:
+    from kurbel.tables.tables import Report
 
 BOOKS = {
     "R": "Rötscher, Die Maschinenelemente (1927)",
