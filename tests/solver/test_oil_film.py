@@ -356,8 +356,8 @@ def test_two_rods_on_a_pin_have_half_its_length_each() -> None:
 
 def test_many_machines_are_as_one_by_one(tmp_path: Path) -> None:
     file = tmp_path / "engine.yaml"
-    viscosities = ["0.1 mPa s", "3 mPa s", "30 mPa s", "1 Pa s", "100 Pa s"]
-    ids = ("film_thickness_min", "eccentricity_max", "film_pressure_max", "film_loss", "side_flow")
+    viscosities = ["0.3 mPa s", "30 mPa s", "10 Pa s"]
+    ids = ("film_thickness_min", "film_pressure_max", "film_loss", "side_flow")
     file.write_text(text_of(ENGINE), encoding="utf-8")
     rows = sweep(file, {"oil_film.viscosity": viscosities}, ids)
     for row, viscosity in enumerate(viscosities):

@@ -51,6 +51,7 @@ class FilmBearing(Record):
         "2c",
         above=0,
         instead="clearance",
+        example="0.2 mm",
         gives=lambda given: {"clearance": given["diametral_clearance"] / 2},
         usual="about 1/1000 of the diameter",
     )
@@ -60,6 +61,7 @@ class FilmBearing(Record):
         "D",
         above=0,
         absent="that of `crankshaft` or `friction`",
+        example="210 mm",
     )
     length: float | None = field(
         "length",
@@ -67,6 +69,7 @@ class FilmBearing(Record):
         "L",
         above=0,
         absent="that of the pin, over the number of rods on it, or of the journal",
+        example="160 mm",
     )
     groove: float | None = field(
         "length",
@@ -74,6 +77,7 @@ class FilmBearing(Record):
         "g",
         above=0,
         absent="none",
+        example="10 mm",
     )
     viscosity: float | None = field(
         "viscosity",
