@@ -122,8 +122,8 @@ def compared(textbook: Textbook, quantity: str, degrees: Array) -> tuple[Array, 
         motion, order = motion_of(machine.cylinders[0].mechanism), "xcb".index(quantity)
         truth = [motion.at(mpf(float(angle)))[order] for angle in degrees]
         return np.array(truth), motion_methods(machine, degrees, order)
-    truth = np.atleast_1d(np.array(textbook.reference(quantity), dtype=object))
-    return truth, force_methods(machine, quantity, TextbookMachine(textbook, quantity))
+    exact = np.atleast_1d(np.array(textbook.reference(quantity), dtype=object))
+    return exact, force_methods(machine, quantity, TextbookMachine(textbook, quantity))
 
 
 def motion_methods(machine: Machine, degrees: Array, order: int) -> Iterator[Method]:
