@@ -172,7 +172,7 @@ def _rules_of(bearing: FilmBearing, diameters: list[Size], lengths: list[Size]) 
             sentence = longer % (size.key, size.record)
             yield Rule("length", bearing.length > size.value, sentence, numbers)
 
-    diameter = bearing.diameter
+    diameter: Number | None = bearing.diameter
     if diameter is None and diameters:
         diameter = diameters[0].value
     if diameter is not None:
@@ -182,7 +182,7 @@ def _rules_of(bearing: FilmBearing, diameters: list[Size], lengths: list[Size]) 
         )
         numbers = {"clearance": bearing.clearance, "diameter": diameter}
         yield Rule("clearance", bearing.clearance >= _WIDEST * diameter, wide, numbers)
-    length = bearing.length
+    length: Number | None = bearing.length
     if length is None and lengths:
         length = functools.reduce(np.minimum, [size.value for size in lengths])
     if bearing.groove is not None and length is not None:
