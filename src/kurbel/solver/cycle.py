@@ -83,16 +83,18 @@ class SampledCylinder:
         state = _state_on(drive, pieces)
         if drive.has_force:
             if some(drive.ring_surface != 0):
-                pieces, state = _cut(drive, pieces, state, lambda one: [one.pressure_difference])
+                pieces, state = _cut(
+                    drive, pieces, state, lambda cylinder: [cylinder.pressure_difference]
+                )
             if drive.rubs or drive.yoke_rubs:
                 pieces, state = _cut(
-                    drive, pieces, state, lambda one: [_sense(one.without_pin_friction)]
+                    drive, pieces, state, lambda cylinder: [_sense(cylinder.without_pin_friction)]
                 )
             _refuse_locking(state, pieces)
             if drive.pin_friction:
                 pieces, state = _cut(drive, pieces, state, _loads_of_pins)
                 if drive.rubs:
-                    pieces, state = _cut(drive, pieces, state, lambda one: [_sense(one)])
+                    pieces, state = _cut(drive, pieces, state, lambda cylinder: [_sense(cylinder)])
         fine, state, _ = _halved(drive, pieces, state, _smooth)
         return fine, state, pieces
 
