@@ -193,8 +193,9 @@ _ROWS = (
         section=(3, "Forces"),
         options=("uncertainty",),
         first="x theta P N T M_out b_max c_max theta_ddot_max theta_dot_max power mean_pressure "
-        "P_max P_min N_max N_min T_max T_min friction_work friction_power friction_loss friction_force_mean",
-        named="b_max c_max theta_ddot_max theta_dot_max friction_work friction_power friction_loss",
+        "P_max P_min N_max N_min T_max T_min friction_work friction_power friction_loss friction_force_mean "
+        "power_indicated power_friction mechanical_efficiency",
+        named="b_max c_max theta_ddot_max theta_dot_max friction_work friction_power friction_loss power_friction",
         in_cases="p_max P_max P_min T_max rod_compression_max rod_tension_max reversal_angle reversal_ratio work power",
     ),
     Command(

@@ -3,7 +3,10 @@
 What is only said to people, warnings and what is left out, is imported when it is read: a CSV table has none of it.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from kurbel.errors import UsageError
 from kurbel.solver.case import Case
@@ -12,6 +15,9 @@ from kurbel.solver.gas import Pressure
 from kurbel.tables.frame import Frame, Functions, Subject
 from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
+
+if TYPE_CHECKING:
+    from kurbel.solver.total_work import TotalWork
 
 
 def mechanism_notes(case: Case) -> Iterable[str]:
@@ -57,7 +63,7 @@ MOTION = Functions("Motion of the crank train", _with_motion, mechanism_notes, l
 
 
 def _with_forces(case: Case) -> list[Subject]:
-    return [
+    cylinders = [
         Subject(
             forces.drive.name,
             forces,
@@ -69,6 +75,20 @@ def _with_forces(case: Case) -> list[Subject]:
         )
         for forces in case.cylinders
     ]
+    with_gas = [forces for forces in case.cylinders if forces.work is not None]
+    pistons = sum(max(len(forces.pistons), 1) for forces in with_gas)
+    if pistons < 2:
+        return cylinders
+    total = _total_work()(
+        case.machine, case.cylinders, lambda: case.effort.result(case.effort.mean)
+    )
+    return [*cylinders, Subject("whole machine", total, whole=True)]
+
+
+def _total_work() -> type[TotalWork]:
+    from kurbel.solver.total_work import TotalWork
+
+    return TotalWork
 
 
 def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str]]:

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, ClassVar, Literal, Union
@@ -51,7 +50,6 @@ _BITS = 100
 # the process of a chamber
 
 
-@dataclass(frozen=True, eq=False)
 class Process:
     """The pressure in a chamber over one cycle, from the (firing) dead centre on.
 
@@ -61,9 +59,10 @@ class Process:
     volume over stroke volume.
     """
 
-    lines: Array
-    lift: float = 0.0
-    clearance: float = math.inf
+    def __init__(self, lines: Array, lift: float = 0.0, clearance: float = math.inf) -> None:
+        self.lines = lines
+        self.lift = lift
+        self.clearance = clearance
 
     @cached_property
     def area(self) -> float:
