@@ -127,6 +127,15 @@ def _equal_cylinders() -> type[EqualCylinders]:
     return EqualCylinders
 
 
+def _throw_of_first(cylinders: tuple[Cylinder, ...]) -> Iterator[Rule]:
+    """Yield the rule that the throws count from that of cylinder 1."""
+    if not cylinders or cylinders[0].throw_angle is None:
+        return
+    message = "the throws count from that of cylinder 1; give 0 deg, or leave it out"
+    is_turned = np.not_equal(cylinders[0].throw_angle % 360.0, 0.0)
+    yield Rule(("cylinders", 0, "throw_angle"), is_turned, message)
+
+
 class LoadCase(Record):
     """A load case: values by dotted key that replace those of the file."""
 
@@ -371,6 +380,7 @@ class Machine(Record):
                     self.crankshaft, cylinder.mechanism.rubbing_pin
                 )
                 yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
+        yield from _throw_of_first(self.cylinders)
         yield from crowded(self.cylinders)
         for key, diagram in (
             ("effort", self.effort),
