@@ -32,7 +32,7 @@ CORE = {
     "solver solver.case solver.chambers solver.cycle solver.drive solver.figures solver.forces solver.gas",
     "solver.motion solver.newton solver.rod_load solver.state solver.vector",
     "report report.commands report.forces",
-    "tables tables.frame tables.named_values tables.sources tables.tables",
+    "tables tables.frame tables.named_values tables.shown tables.sources tables.tables",
     "render render.csv_text render.formats render.output render.text",
 }
 """What `kurbel motion -f csv` of a crank with its rod needs of the trades. Whoever adds a module here adds it to the

@@ -8,7 +8,7 @@ import click
 
 from kurbel.cli.group import ProgressLine
 from kurbel.cli.request import case_of, cases_of
-from kurbel.machine_file.overrides import given
+from kurbel.machine_file.overrides import key_texts
 from kurbel.page.summary import facts_of, subtitle_of, tiles
 from kurbel.page.whole import side_by_side, whole_report
 from kurbel.pictures.picture_source import PictureOptions
@@ -48,7 +48,7 @@ def write_page(
     refuse_overwriting(file_name, files)
     system = units or "metric"
     cases = [case_of(file, case_name, overrides, file_name) for file in files]
-    keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
+    keys = [key_texts(case.machine.origin) if case.machine.origin else () for case in cases]
     with ProgressLine("report") as progress:
         if len(cases) == 1:
             load_cases = (

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.structures import Maker, ReadMapping
+from kurbel.declared.forms.making import Maker
+from kurbel.declared.forms.structures import ReadMapping
 from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import Reading, StopReading

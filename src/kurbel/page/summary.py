@@ -20,7 +20,8 @@ from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.pictures.picture import Fact, Facts, FactValue, Grid, Notice, SectionItem
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
-from kurbel.tables.frame import PlaceRow, Places, Subject, before_jumps
+from kurbel.tables.frame import Subject, before_jumps
+from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import BEFORE, grouped, together
 
 Thing = TypeVar("Thing")

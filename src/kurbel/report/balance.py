@@ -17,7 +17,8 @@ from kurbel.notes.warnings import (
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.balance import MachineBalance
-from kurbel.tables.frame import Functions, PlaceRow, Places, Subject
+from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.shown import PlaceRow, Places
 
 ORDERS = by_id(
     Quantity("order", "n", "ratio", "Order: turns of the components in one turn of the crank"),

@@ -9,7 +9,8 @@ from kurbel.notes.warnings import of_machine
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.delivery import CompressorStage, MachineDelivery
-from kurbel.tables.frame import Functions, PlaceRow, Places, Subject
+from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
 
 ENDS = by_id(

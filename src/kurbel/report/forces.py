@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator
 from kurbel.errors import UsageError
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.tables.frame import Frame, Functions, PlaceRow, Places, Subject
+from kurbel.tables.frame import Frame, Functions, Subject
+from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
 
 

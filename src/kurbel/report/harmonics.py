@@ -16,7 +16,8 @@ from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.harmonics import CylinderOrders, MachineOrders, Orders
-from kurbel.tables.frame import Frame, Functions, PlaceRow, Places, Subject
+from kurbel.tables.frame import Frame, Functions, Subject
+from kurbel.tables.shown import PlaceRow, Places
 
 TORQUE_ORDERS = by_id(
     Quantity("speed", "n", "speed", "Speed of rotation"),

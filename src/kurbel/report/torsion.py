@@ -13,7 +13,8 @@ from kurbel.report.harmonics import TORQUE_ORDERS, requested_orders
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.chain import Holzer, holzer_at, tree_from_first
 from kurbel.solver.chapters.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
-from kurbel.tables.frame import Frame, Functions, PlaceRow, Places, Subject
+from kurbel.tables.frame import Frame, Functions, Subject
+from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
 
 MODES = by_id(

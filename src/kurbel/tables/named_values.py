@@ -111,21 +111,24 @@ def _choice(
     if scope and scope not in scopes:
         near = did_you_mean(scope, tuple(scopes))
         raise UsageError(
-            f"--key-values: {text_in_one_line(name)}: kurbel {command} has no '{text_in_one_line(scope)}'{near} (it has {', '.join(scopes)})"
+            f"--key-values: {text_in_one_line(name)}: kurbel {command} has no "
+            f"'{text_in_one_line(scope)}'{near} (it has {', '.join(scopes)})"
         )
     return Choice(scope, ids[0])
 
 
 def _unknown(name: str, id: str, command: str, declared: Mapping[str, Quantity]) -> str:
     """Return the message for a name that is no key value of a command: who has it, or what it may be."""
-    every = every_quantity()
-    elsewhere = called(id, every.all_key_values)
+    quantities = every_quantity()
+    shown_name = text_in_one_line(name)
+    elsewhere = called(id, quantities.all_key_values)
     if elsewhere:
-        commands = " and ".join(f"kurbel {word}" for word in every.commands_of(elsewhere[0]))
-        return f"'{text_in_one_line(name)}' is no key value of kurbel {command}; it is one of {commands}"
-    columns = called(id, every.columns(command).values())
+        words = quantities.commands_of(elsewhere[0])
+        commands = " and ".join(f"kurbel {word}" for word in words)
+        return f"'{shown_name}' is no key value of kurbel {command}; it is one of {commands}"
+    columns = called(id, quantities.columns(command).values())
     if columns:
-        return f"'{text_in_one_line(name)}' is a column and no key value; --columns {columns[0]} prints it"
-    words = tuple(word for quantity in declared.values() for word in (quantity.id, quantity.symbol))
-    near = in_sentences(id, declared.values()) or did_you_mean(id, words)
-    return f"'{text_in_one_line(name)}' is no key value of kurbel {command}{near}"
+        return f"'{shown_name}' is a column and no key value; --columns {columns[0]} prints it"
+    names = [name for quantity in declared.values() for name in (quantity.id, quantity.symbol)]
+    near = in_sentences(id, declared.values()) or did_you_mean(id, tuple(names))
+    return f"'{shown_name}' is no key value of kurbel {command}{near}"
