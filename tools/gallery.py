@@ -47,7 +47,7 @@ TEACHING = {
     "triplex-pump": "flow",
     "v8-cross-plane": "free-orders",
     "vr6": "mechanism",
-    "w9": "mechanism",
+    "w9": "free-angle",
     "waterworks": "piston-force",
     "waterworks-two-cranks": "effort",
     "yoke-frame-pump": "mechanism",

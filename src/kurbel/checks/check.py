@@ -160,7 +160,7 @@ def _left_out(text: str, path: Path = ()) -> CheckEntry:
 
 def _crank_entries(machine: Machine) -> Iterator[CheckEntry]:
     """Yield for each of several cylinders by which angle it follows the first, and where its crank pin is."""
-    if len(machine.cylinders) == 1:
+    if len(machine.cylinders) < 2:
         return
     first = machine.cylinders[0]
     is_banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
