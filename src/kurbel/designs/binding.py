@@ -283,6 +283,7 @@ def _with_same_branches(machine: Machine, indices: Indices) -> list[Indices]:
 
     changed(machine, coded)
     for cylinder, other in combinations(machine.cylinders, 2):
+        first = machine.cylinders[0]
         bank_difference = cylinder.bank_angle - other.bank_angle
         first = machine.cylinders[0]
         pin_difference = pin_lag(cylinder, first) - pin_lag(other, first)
