@@ -84,8 +84,7 @@ class Quantity(NamedTuple):
         >>> Quantity("M", "M", "torque", "Torque on the shaft").short
         'torque'
         """
-        first = _FIRST_WORDS.match(self.text)
-        return self.called or (first.group().strip() if first else self.text).lower()
+        return self.called or first_words(self.text).lower()
 
     @property
     def bounded_below(self) -> bool:
@@ -152,6 +151,16 @@ class Quantity(NamedTuple):
         plain = self.plain and f"{self.plain}{comma}{end}"
         symbol, text = f"{self.symbol}{comma}{end}", f"{_LARGEST[end]} {self.called}"
         return Quantity(f"{self.id}_{end}", symbol, self.kind, text, plain)
+
+
+def first_words(sentence: str) -> str:
+    """Return the first words of the sentence of a quantity, which name it.
+
+    >>> first_words("Largest velocity on the outstroke")
+    'Largest velocity'
+    """
+    first = _FIRST_WORDS.match(sentence)
+    return first.group().strip() if first else sentence
 
 
 def by_id(*quantities: Quantity) -> dict[str, Quantity]:
@@ -282,7 +291,7 @@ class Computed(Generic[V]):
         repeats: ResultCondition | None = None,
     ) -> None:
         self.name, self.__doc__ = quantity.id, quantity.text
-        self.function = function or (lambda one: one.answers.get(self.name))
+        self.function = function or (lambda row: row.answers.get(self.name))
         self.rows: tuple[QuantityRow, ...] = (QuantityRow(quantity, self.__get__, unless, repeats),)
 
     def __set_name__(self, owner: type, name: str) -> None:

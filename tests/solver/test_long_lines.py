@@ -54,7 +54,8 @@ def test_the_modes_together_are_the_whole(
     torques, loss = swings(by_modes), by_modes.vibration_loss
     monkeypatch.setattr(torsion, "_MOST_WORK", np.inf)
     whole = line(masses, load)
-    assert by_modes.steady and whole.steady
+    assert by_modes.steady
+    assert whole.steady
     assert torques == pytest.approx(swings(whole), rel=1e-12)
     assert loss == pytest.approx(whole.vibration_loss, rel=1e-12)
 
@@ -95,7 +96,8 @@ def test_a_line_that_is_summed_has_its_power_of_all_these_orders() -> None:
         ShaftPart(inertia=0.5),
     ]
     vibration = Case(Machine((), effort=EFFORT, speed=6.0, shaft=line_of(parts))).torsion
-    assert vibration.summed is not None and vibration.summed[-1] == 384
+    assert vibration.summed is not None
+    assert vibration.summed[-1] == 384
     twists = np.abs(vibration._summed.torques[0, 0] / (1e6 * (1 + 0.02j))) ** 2
     powers = 0.02 * 1e6 * 2 * np.pi * 6.0 * vibration.summed * twists / 2
     assert vibration.vibration_loss == pytest.approx(powers.sum(), rel=1e-12)

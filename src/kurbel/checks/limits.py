@@ -18,7 +18,8 @@ from kurbel.quantities import KEY_VALUES, key_values_of, key_values_of_chapters
 from kurbel.quantity import NOISE_POWER, Quantity, called
 from kurbel.report.commands import COMMANDS, subjects_of
 from kurbel.solver.case import Case
-from kurbel.tables.frame import Frame, PlaceRow, Places, Subject, report_on, too_large
+from kurbel.tables.frame import Frame, Subject, report_on
+from kurbel.tables.shown import PlaceRow, Places, too_large
 from kurbel.tables.tables import Report, grouped, together
 
 _ROUNDING = 1e-9

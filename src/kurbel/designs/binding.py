@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.structures import Maker, ReadMapping
+from kurbel.declared.forms.making import Maker
+from kurbel.declared.forms.structures import ReadMapping
 from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import Reading, StopReading
@@ -281,9 +282,10 @@ def _with_same_branches(machine: Machine, indices: Indices) -> list[Indices]:
         return numbers
 
     changed(machine, coded)
-    first = machine.cylinders[0]
     for cylinder, other in combinations(machine.cylinders, 2):
+        first = machine.cylinders[0]
         bank_difference = cylinder.bank_angle - other.bank_angle
+        first = machine.cylinders[0]
         pin_difference = pin_lag(cylinder, first) - pin_lag(other, first)
         axial_position = 0.0 if cylinder.axial_position is None else cylinder.axial_position
         other_position = 0.0 if other.axial_position is None else other.axial_position

@@ -5,7 +5,7 @@ import math
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.friction import holding_force
-from kurbel.tables.frame import PlaceRow, Places, shown_key_values
+from kurbel.tables.shown import PlaceRow, Places, shown_key_values
 from kurbel.tables.tables import LeftOut, Part, Report
 
 _UP = Quantity("P_up", "P/Q", "ratio", "Force over the weight that moves the body up")

@@ -8,7 +8,8 @@ from kurbel.notes.warnings import of_machine, rods_on_pin, shells
 from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.stress import PARTS, CrankshaftStrength, ThrowStrength
-from kurbel.tables.frame import Functions, PlaceRow, Places, Subject
+from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.shown import PlaceRow, Places
 
 STRESSES = by_id(
     Quantity(
