@@ -8,6 +8,7 @@ import pytest
 
 FOLDER = Path(__file__).parent.parent / "benchmarks"
 BRIEF = {
+    "free_bodies.py": ["punch"],
     "pareto_front.py": ["2000"],
     "random_cylinders.py": ["5"],
     "random_files.py": ["5"],
@@ -15,12 +16,18 @@ BRIEF = {
     "reading.py": ["500"],
     "speed_lines.py": ["1"],
     "start_up.py": ["1"],
-    "sweep.py": ["20"],
 }
 
 
-# these take minutes even at their shortest, and are run by hand
-LONG = {"metamorphic.py", "stiff_scenes.py"}
+# these take half a minute to minutes even at their shortest: they are run by hand, here only loaded
+LONG = {
+    "against_the_books.py",
+    "flywheel.py",
+    "metamorphic.py",
+    "stiff_scenes.py",
+    "sweep.py",
+    "traces.py",
+}
 
 
 @pytest.mark.slow
@@ -30,3 +37,13 @@ def test_benchmark_runs(name: str) -> None:
     done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(LONG))
+def test_long_benchmark_loads(name: str) -> None:
+    module = name.removesuffix(".py")
+    command = [sys.executable, "-c", f"import {module}; print({module}.main)"]
+    done = subprocess.run(command, cwd=FOLDER, capture_output=True, encoding="utf-8", check=False)
+    assert done.returncode == 0, done.stderr
+    assert "function main" in done.stdout

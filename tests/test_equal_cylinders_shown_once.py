@@ -40,8 +40,8 @@ def test_check_tells_equal_ones_once_and_each_of_their_cranks() -> None:
     assert "\ncylinders 1–4\n" in page
     lines = page.split("\nCranks\n")[1].split("\n\n")[0].splitlines()
     assert lines == [
-        f"  cylinder {n}  {at} deg after the first"
-        for n, at in ((1, 0), (2, 540), (3, 180), (4, 360))
+        f"  cylinder {n}  {at} deg after the first, crank pin {pin} deg behind the first"
+        for n, at, pin in ((1, 0, 0), (2, 540, 180), (3, 180, 180), (4, 360, 0))
     ]
     assert "Cranks" not in printed("check", str(CONFIGS["waterworks"]))
 

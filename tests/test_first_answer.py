@@ -5,6 +5,7 @@ crank pin and journals.
 """
 
 import csv
+import sys
 from io import StringIO
 from pathlib import Path
 
@@ -13,13 +14,13 @@ import pytest
 
 from command import answer, printed, run
 from kurbel.machine_file import load
-from kurbel.render import Look
-from kurbel.render.page import selection
+from kurbel.render import Look, page
+from kurbel.render.page import fitting, selection
 from kurbel.render.text import plain_lines
 from kurbel.report.commands import COMMANDS, report_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame
-from kurbel.tables.tables import Report, first_selection, stepped
+from kurbel.tables.tables import Report, first_selection, shown_once, stepped
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = str(CONFIGS / "waterworks.yaml")
@@ -63,6 +64,33 @@ def test_what_the_user_named_is_on_the_first_screen(path: Path) -> None:
         assert set(symbols) <= set(begun)
 
 
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_a_terminal_of_24_lines_keeps_what_the_user_named_of_every_cylinder(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The prompt takes the last of the 24 lines; what scrolls away is not an answer."""
+    monkeypatch.setattr(page, "terminal_size", lambda: (80, 24))
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    command = COMMANDS["forces"]
+    report = forces_of(path)
+    ids = (command.first.split(), command.named.split())
+    lines = list(plain_lines(fitting(report, Look(width=80), *ids)))
+    kept = [line.split()[0] for line in lines[-23:] if line.startswith("  ")]
+    for part in shown_once(report).parts:
+        for key_value in part.key_values:
+            if key_value.id in NAMED and not key_value.minor:
+                kept.remove(key_value.symbol)
+
+
+def test_the_help_and_the_report_name_the_books_of_their_references() -> None:
+    assert "R: Roetscher, Die Maschinenelemente (1927)" in " ".join(
+        printed("motion", "--help").split()
+    )
+    assert "Roetscher" not in printed("units", "--help")
+    footer = run("report", WATERWORKS, "-o", "-").stdout.partition("<footer>")[2]
+    assert "Rötscher, Die Maschinenelemente (1927)" in footer
+
+
 def test_the_first_selection_of_the_waterworks_engine_has_at_most_26_lines() -> None:
     lines = screen_of(forces_of(Path(WATERWORKS)), 100)
     assert len(lines) <= 26
@@ -74,8 +102,9 @@ def test_the_first_selection_of_the_waterworks_engine_has_at_most_26_lines() -> 
 
 
 def test_the_first_page_of_the_report_has_the_same_figures() -> None:
-    page = run("report", WATERWORKS, "-o", "-").stdout
-    tiles = page[page.index('class="facts"') : page.index("</div>", page.index('class="facts"'))]
+    text = run("report", WATERWORKS, "-o", "-").stdout
+    facts = text.index('class="facts"')
+    tiles = text[facts : text.index("</div>", facts)]
     for title in (
         "Largest acceleration",
         "Highest piston speed",
@@ -254,3 +283,20 @@ def test_two_rods_with_several_pistons_have_tables_with_their_names() -> None:
 def test_a_machine_without_a_guide_has_no_guide_force() -> None:
     page = printed("forces", str(CONFIGS / "yoke-frame-pump.yaml"))
     assert "guide force" not in page
+
+
+def cells_of_b(angles: str) -> list[str]:
+    table = printed("motion", WATERWORKS, "--angles", angles, "--columns", "b")
+    row = next(line for line in table.splitlines() if line.startswith("b"))
+    return row.split()[2:]
+
+
+def test_no_value_next_to_a_zero_of_the_curve_is_printed_as_zero() -> None:
+    """R ω² (cos φ + (λ cos 2φ + λ³ sin⁴ φ)/(1 − λ² sin² φ)^1.5) is 2.207e-3 m/s2 at 79.09, 7.687e-6 at 79.1001 degrees."""
+    assert cells_of_b("0,79,90") == ["13.16", "0.02", "-2.24"]
+    # one or two more decimals for all, so that they can be compared
+    assert cells_of_b("0,79.09,90") == ["13.159", "0.002", "-2.238"]
+    # a power of ten for that value alone
+    assert cells_of_b("0,79.1001,90")[::2] == ["13.16", "-2.24"]
+    number, _, power = cells_of_b("0,79.1001,90")[1].partition("·")
+    assert (number, power) == ("7.7", "10⁻⁶")

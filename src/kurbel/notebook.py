@@ -80,7 +80,7 @@ def _key_values(results: Results, caption: str) -> str:
     from kurbel.render import Look
     from kurbel.render.markup import Html, written
     from kurbel.render.text_tables import key_value_table
-    from kurbel.tables.frame import shown_key_values
+    from kurbel.tables.shown import shown_key_values
 
     with np.errstate(all="ignore"):
         try:

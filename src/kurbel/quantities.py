@@ -46,10 +46,14 @@ class ByChapter(Mapping[str, Quantity]):
         self._lists: dict[Chapter, Mapping[str, Quantity]] = {}
 
     def __getitem__(self, id: str) -> Quantity:
+        return self.of_chapter_with(id)[id]
+
+    def of_chapter_with(self, id: str) -> Mapping[str, Quantity]:
+        """Return all quantities of the first chapter that has this one; raises KeyError if none has it."""
         if id.isidentifier():
             for quantities in self._chapter_by_chapter():
                 if id in quantities:
-                    return quantities[id]
+                    return quantities
         raise KeyError(id)
 
     def __iter__(self) -> Iterator[str]:
@@ -100,12 +104,18 @@ COLUMNS = ByChapter(lambda lists: tuple(column for column in lists.all_columns i
 
 
 def key_values_of(command: str, names: Iterable[str]) -> dict[str, Quantity]:
-    """Return the key values of a command by id: those of its own chapters if these have all the names, else all."""
-    own: list[Quantity] = []
-    for chapter in CHAPTERS:
-        if chapter.command == command:
-            own += result_rows(chapter.kind, closed=doors_of(chapter.kind)).lists.all_key_values
-    quantities = Lists((), tuple(own)).key_values(command)
+    """Return the key values of a command by id: of its own chapters if these have all the names, else all."""
+    quantities = key_values_of_chapters(command)
     if all(name in quantities for name in names):
         return quantities
     return every_quantity().key_values(command)
+
+
+def key_values_of_chapters(command: str) -> dict[str, Quantity]:
+    """Return the key values of a command by id: of its own chapters, and of cylinders; no other one is opened."""
+    quantities = list[Quantity]()
+    for chapter in CHAPTERS:
+        if chapter.command in (CylinderForces.command, command):
+            rows = result_rows(chapter.kind, closed=doors_of(chapter.kind))
+            quantities += rows.lists.all_key_values
+    return Lists((), tuple(quantities)).key_values(command)

@@ -3,7 +3,7 @@
 from functools import cache
 
 from kurbel.cli.request import cases_of
-from kurbel.machine_file.overrides import given
+from kurbel.machine_file.overrides import key_texts
 from kurbel.page.whole import side_by_side, whole_report
 from kurbel.render import Look
 from kurbel.render.report_page import report_page
@@ -13,7 +13,7 @@ from representative import case_of
 
 def page_of_case(case: Case, cases: tuple[Case, ...] = ()) -> str:
     """The report of one machine."""
-    keys = given(case.machine.origin) if case.machine.origin else ()
+    keys = key_texts(case.machine.origin) if case.machine.origin else ()
     document = whole_report(case, keys, "metric", 15.0, lambda doing: None, cases)
     return "".join(report_page(document, Look("html"), "2000-01-01"))
 
@@ -24,6 +24,6 @@ def page_of(*names: str, cases: bool = False) -> str:
     machines = [case_of(name) for name in names]
     if len(machines) == 1:
         return page_of_case(machines[0], tuple(cases_of(machines[0].machine)) if cases else ())
-    keys = [given(case.machine.origin) for case in machines if case.machine.origin]
+    keys = [key_texts(case.machine.origin) for case in machines if case.machine.origin]
     document = side_by_side(machines, keys, "metric", lambda doing: None)
     return "".join(report_page(document, Look("html"), "2000-01-01"))

@@ -14,7 +14,7 @@ from pages import page_of, page_of_case
 
 from command import run
 from kurbel.machine_file import loads
-from kurbel.machine_file.overrides import given
+from kurbel.machine_file.overrides import key_texts
 from kurbel.pictures.picture_source import PictureOptions
 from kurbel.pictures.pictures import pictures
 from kurbel.solver.case import Case
@@ -287,7 +287,7 @@ def test_the_input_is_told_as_it_was_read() -> None:
         overrides=("bore=450 mm", "masses.piston=1 kg"),
     )
     assert machine.origin
-    assert dict(given(machine.origin)) == {
+    assert dict(key_texts(machine.origin)) == {
         "stroke": "800 mm",
         "rod_ratio": "5",
         "bore": "450 mm",

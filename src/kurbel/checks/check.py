@@ -9,8 +9,9 @@ from kurbel.checks.limits import CheckEntry, compared_entries
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Machine
+from kurbel.machine.cylinder import pin_lag
 from kurbel.machine.firing import firings
-from kurbel.machine.several import intervals
+from kurbel.machine.several import intervals, rounded_within_cycle
 from kurbel.notes.left_out import (
     balance_left_out,
     missing,
@@ -159,14 +160,16 @@ def _left_out(text: str, path: Path = ()) -> CheckEntry:
 
 def _crank_entries(machine: Machine) -> Iterator[CheckEntry]:
     """Yield for each of several cylinders by which angle it follows the first, and where its crank pin is."""
-    banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
-    for cylinder in machine.cylinders if len(machine.cylinders) > 1 else ():
-        # the dead centre of a crank is at its bank
-        behind = (cylinder.crank_position - cylinder.bank_angle) % 360.0
-        pin = f", stroke line at {cylinder.bank_angle:g} deg: crank pin {behind:g} deg behind the first"
-        yield CheckEntry(
-            cylinder.name, f"{cylinder.crank_position:g} deg after the first{pin if banked else ''}"
-        )
+    if len(machine.cylinders) == 1:
+        return
+    is_banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
+    for cylinder in machine.cylinders:
+        text = f"{cylinder.crank_position:g} deg after the first, "
+        if is_banked:
+            text += f"stroke line at {cylinder.bank_angle:g} deg: "
+        behind = rounded_within_cycle(pin_lag(cylinder, machine.cylinders[0]), 360.0)
+        text += f"crank pin {behind:g} deg behind the first"
+        yield CheckEntry(cylinder.name, text)
 
 
 def _turning_entries(machine: Machine) -> Iterator[CheckEntry]:

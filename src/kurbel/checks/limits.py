@@ -14,11 +14,12 @@ from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
-from kurbel.quantities import KEY_VALUES, key_values_of
+from kurbel.quantities import KEY_VALUES, key_values_of, key_values_of_chapters
 from kurbel.quantity import NOISE_POWER, Quantity, called
 from kurbel.report.commands import COMMANDS, subjects_of
 from kurbel.solver.case import Case
-from kurbel.tables.frame import Frame, PlaceRow, Places, Subject, report_on, too_large
+from kurbel.tables.frame import Frame, Subject, report_on
+from kurbel.tables.shown import PlaceRow, Places, too_large
 from kurbel.tables.tables import Report, grouped, together
 
 _ROUNDING = 1e-9
@@ -80,10 +81,10 @@ def judged(case: Case) -> Iterator[CheckEntry]:
             for equal in grouped(found, lambda one: f"{one[1]:.9g}")
         ]
         yield from verdicts
-        if all(verdict.severity == "info" for verdict in verdicts) and not isinstance(
-            bound, Expected
-        ):
-            yield from _beyond_by_sign(case, name, bound, path, declared)
+        is_within = all(verdict.severity == "info" for verdict in verdicts)
+        if is_within and not isinstance(bound, Expected):
+            siblings = declared.of_chapter_with(quantity.id)
+            yield from _beyond_by_sign(case, name, bound, path, siblings)
 
 
 def no_such_value(name: str, id: str) -> str:
@@ -139,7 +140,10 @@ def _shown(value: float, kind: str, unit: str) -> str:
 def _beyond_by_sign(
     case: Case, name: str, bound: Bound, path: Path, declared: Mapping[str, Quantity]
 ) -> Iterator[CheckEntry]:
-    """Yield a note if the extreme of the other sign has a larger magnitude than a limit, which does not apply to it."""
+    """Yield a note if the extreme of the other sign has a larger magnitude than a limit, which does not apply to it.
+
+    declared: the key values of the chapter that has this one.
+    """
     base, _, end = name.rpartition("_")
     other, upward = (f"{base}_min", 1) if end == "max" else (f"{base}_max", -1)
     quantity = declared.get(scoped(other)[1]) if end in ("max", "min") else None
@@ -193,12 +197,12 @@ def holders(case: Case, name: str) -> list[Holder]:
 
     scope, id = scoped(name)
     cylinders = [cylinder.name for cylinder in case.machine.cylinders]
-    commands = KEY_VALUES.commands_of(id)
-    first = next(commands)
+    first = next(KEY_VALUES.commands_of(id))
     # what the only cylinder does not have, the machine does not have
-    whole = [one for one in commands if one == "flywheel"] if scope or len(cylinders) != 1 else []
+    may_be_of_whole = bool(scope) or len(cylinders) != 1
+    whole = ["flywheel"] if may_be_of_whole and id in key_values_of_chapters("flywheel") else []
     of_machine: list[Holder] = []
-    for command in (first, *whole):
+    for command in dict.fromkeys((first, *whole)):
         own = []
         for subject in subjects_of(case, command, pistons=bool(scope)):
             quantity = subject.lists.key_values(command).get(id)

@@ -48,9 +48,32 @@ def exit_statuses(command: str = "") -> str:
     return "Exit status: " + "; ".join(f"{status} {_MEANINGS[status]}" for status in listed)
 
 
+def _legend(texts: Iterable[str]) -> str:
+    from kurbel.tables.sources import legend
+
+    return legend(texts)
+
+
+class KurbelCommand(click.Command):
+    """A command whose help ends with the books to which it refers, and with its exit statuses."""
+
+    def end_of_help(self) -> list[str]:
+        """Return these paragraphs, in ASCII."""
+        texts = [self.help or ""]
+        texts += [option.help or "" for option in self.params if isinstance(option, click.Option)]
+        books = Look(encoding="ascii").text(_legend(texts))
+        return [text for text in (books, exit_statuses(self.name or "")) if text]
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        for text in self.end_of_help():
+            formatter.write_paragraph()
+            formatter.write_text(text)
+
+
 class Kurbel(click.Group):
     """The group, which ends every run with a message instead of a traceback."""
 
+    command_class = KurbelCommand
     door: Callable[[str], object]
     """Imports the module of a command, which adds it; set by `kurbel.cli`."""
 
@@ -69,7 +92,7 @@ class Kurbel(click.Group):
     def add_command(self, cmd: click.Command, name: str | None = None) -> None:
         super().add_command(cmd, name)
         assert cmd.name
-        cmd.short_help, cmd.epilog = COMMANDS[cmd.name].summary, exit_statuses(cmd.name)
+        cmd.short_help = COMMANDS[cmd.name].summary
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -15,7 +15,7 @@ from kurbel.render.formats import Output
 from kurbel.render.output import refuse_overwriting
 from kurbel.report.commands import COMMANDS
 from kurbel.solver.case import Case
-from kurbel.tables.frame import Frame, Subject, over_stroke, rows_where
+from kurbel.tables.frame import Frame, Subject
 from kurbel.tables.named_values import choices_in
 from kurbel.tables.tables import table_angles
 
@@ -122,8 +122,12 @@ def print_report(
         end = functions.end(case)
         rows_at: Sequence[float] | Callable[[Subject], Sequence[float]]
         if where is not None:  # where a force has a value there is a motion to print, too
+            from kurbel.tables.row_angles import rows_where
+
             rows_at = rows_where(where, "forces" if command == "motion" else command, end)
         elif over:
+            from kurbel.tables.row_angles import over_stroke
+
             rows_at = over_stroke(step, end)
         else:
             rows_at = table_angles(step, angles, end, max(len(case.cylinders), 1))
@@ -159,4 +163,5 @@ def print_report(
     selected = any(
         context.get_parameter_source(option) is ParameterSource.COMMANDLINE for option in options
     )
-    output.write(report, None if selected else COMMANDS[command].first.split())
+    shown = COMMANDS[command]
+    output.write(report, None if selected else shown.first.split(), shown.named.split())

@@ -3,6 +3,7 @@
 Reader, schema and pages read the table `KEYS` of a record (`Cylinder`, `Piston`, …).
 """
 
+import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields
@@ -67,8 +68,8 @@ class Key(NamedTuple):
     @property
     def written(self) -> str:
         """How its value is written: as the form says, with the example of the key."""
-        form = self.form
-        return form.written.replace(form.example, self.example) if self.example else form.written
+        written = self.form.written
+        return written.replace(self.form.example, self.example) if self.example else written
 
     def line(self, name: str) -> str:
         """Return a line of a file that gives it, such as `bore: 450 mm`; '' if it takes more than one line."""
@@ -77,7 +78,8 @@ class Key(NamedTuple):
 
     def write(self, name: str) -> str:
         """Return what to write where it is missing."""
-        return f"write for instance '{self.line(name) or f'{name}: …'}'"
+        line = self.line(name) or f"{name}: …"
+        return f"write for instance '{line}'"
 
 
 Keys = dict[str, Key]
@@ -85,16 +87,18 @@ Keys = dict[str, Key]
 
 def required(keys: Keys) -> list[str]:
     """Return the names of the keys that must be given, and that no other key can replace."""
-    replaced = {key.instead for key in keys.values()}
-    return [name for name, key in keys.items() if key.required and name not in replaced]
+    replaceable = {key.instead for key in keys.values()}
+    return [name for name, key in keys.items() if key.required and name not in replaceable]
 
 
 def absent_text(keys: Keys, name: str) -> str:
     """Return what holds without a key: its `absent`, or that it (or an alternative) must be given."""
-    key = keys[name]
-    either = [name, *(other for other, one in keys.items() if one.instead == name)]
-    alone = "must be given" if len(either) == 1 else f"{' or '.join(either)} must be given"
-    return alone if key.required else key.absent
+    if not keys[name].required:
+        return keys[name].absent
+    alternatives = [other for other, key in keys.items() if key.instead == name]
+    if not alternatives:
+        return "must be given"
+    return f"{' or '.join([name, *alternatives])} must be given"
 
 
 class Rule(NamedTuple):
@@ -123,38 +127,41 @@ class Rule(NamedTuple):
     def fault(self, record: "Record | None" = None) -> Fault:
         """Return the fault, with numbers of the rule and entries of the record filled into its message."""
 
-        def filled(found: re.Match[str]) -> str:
-            name, kind = found[1], found[2] or ""
+        def fill(brace: re.Match[str]) -> str:
+            name, kind = brace[1], brace[2] or ""
             key = record.KEYS.get(name) if record else None
             if name in self.numbers:
                 value = self.numbers[name]
             elif key:
-                value, kind = vars(record)[key.attribute], kind or key.form.kind
+                value = vars(record)[key.attribute]
+                kind = kind or key.form.kind
             else:
-                return found[0]
-            return (
-                str(value)
-                if isinstance(value, str)
-                else show(value, kind)
-                if kind
-                else f"{value:g}"
-            )
+                return brace[0]
+            if isinstance(value, str):
+                return value
+            return show(value, kind) if kind else f"{value:g}"
 
-        return Fault(self.path, re.sub(r"\{(\w+)(?::(\w+))?\}", filled, self.sentence), self.at_key)
+        message = re.sub(r"\{(\w+)(?::(\w+))?\}", fill, self.sentence)
+        return Fault(self.path, message, self.at_key)
 
 
-def contradictions(keys: Keys, given: Collection[str]) -> Iterator[Rule]:
-    """Yield the rules on keys that give the same quantity, or that need another key."""
+def contradictions(keys: Keys, present: Collection[str]) -> Iterator[Rule]:
+    """Yield the rules on keys that give the same quantity, or that need another key; present: keys of the file."""
     for name, key in keys.items():
         other = key.instead
-        if name in given and other in given:
+        # the same quantity twice
+        if name in present and other in present:
             yield Rule(name, True, f"'{other}' and '{name}' mean the same; give only one of them")
-        if name in given and key.needs and key.needs not in given:
+        # a key without the one that it needs
+        if name in present and key.needs and key.needs not in present:
             otherwise = f"; {key.or_else}" if key.or_else else ""
             yield Rule(name, True, f"'{name}' needs '{key.needs}' beside it{otherwise}")
-        if other in keys and keys[other].required and name not in given and other not in given:
-            shown = other if keys[other].example else name
-            yield Rule((), True, f"'{other}' or '{name}' is missing; {keys[shown].write(shown)}")
+        # neither of two, one of which is required
+        is_required = other in keys and keys[other].required
+        if is_required and name not in present and other not in present:
+            advised = other if keys[other].example else name
+            advice = keys[advised].write(advised)
+            yield Rule((), True, f"'{other}' or '{name}' is missing; {advice}")
 
 
 def broken(rules: Iterable[Rule], record: "Record | None" = None) -> list[Fault]:
@@ -162,14 +169,17 @@ def broken(rules: Iterable[Rule], record: "Record | None" = None) -> list[Fault]
     return [rule.fault(record) for rule in rules if np.ndim(rule.broken) == 0 and rule.broken]
 
 
-def _out_of_bounds(keys: Keys, given: ValuesByKey) -> list[Fault]:
-    numbers = ((name, keys[name].form, value) for name, value in given.items() if is_number(value))
-    wrong = (
-        (name, value, form.out_of_bounds(value))
-        for name, form, value in numbers
-        if isinstance(form, NumberForm)
-    )
-    return [Fault((name,), f"{value:g} {what}") for name, value, what in wrong if what]
+def _out_of_bounds(keys: Keys, values: ValuesByKey) -> list[Fault]:
+    """Return the faults of numbers that break a bound of their key."""
+    faults = []
+    for name, value in values.items():
+        form = keys[name].form
+        if not is_number(value) or not isinstance(form, NumberForm):
+            continue
+        broken_bound = form.out_of_bounds(value)
+        if broken_bound:
+            faults.append(Fault((name,), f"{value:g} {broken_bound}"))
+    return faults
 
 
 @dataclass_transform(frozen_default=True, eq_default=False)
@@ -187,34 +197,39 @@ class Record:
     __signature__: ClassVar[Signature]
 
     def __init_subclass__(cls) -> None:
-        own = dict(cls.KEYS)
+        # its keys, after those of the class that it extends
+        keys = dict(cls.KEYS)
         for name, value in vars(cls).items():
             if isinstance(value, Key):
-                own[value.attribute or name.lstrip("_")] = value._replace(attribute="")
+                keys[value.attribute or name.lstrip("_")] = value._replace(attribute="")
             elif isinstance(value, Field):
                 if value.default is MISSING and "None" in str(cls.__annotations__[name]):
                     value.default = None
                 key: Key = value.metadata["key"]
                 # one of two alternatives, or a word with a default of its own, may be missing
-                missing = value.default is MISSING and not key.instead and not key.form.inline
-                own[key.attribute or name] = key._replace(attribute=name, required=missing)
-        cls.KEYS = own
+                has_substitute = bool(key.instead or key.form.inline)
+                is_required = value.default is MISSING and not has_substitute
+                keys[key.attribute or name] = key._replace(attribute=name, required=is_required)
+        cls.KEYS = keys
         dataclass(init=False, repr=False, eq=False)(cls)
         # positional arguments: first those without a default
-        each = sorted(fields(cls), key=lambda one: one.default is not MISSING)
-        kind, none = Parameter.POSITIONAL_OR_KEYWORD, Parameter.empty
-        defaults = [none if one.default is MISSING else one.default for one in each]
-        cls.__signature__ = Signature(
-            [
-                Parameter(one.name, kind, default=default, annotation=one.type)
-                for one, default in zip(each, defaults)
-            ]
-        )
+        parameters = []
+        for entry in sorted(fields(cls), key=lambda entry: entry.default is not MISSING):
+            default = Parameter.empty if entry.default is MISSING else entry.default
+            parameters.append(
+                Parameter(
+                    entry.name,
+                    Parameter.POSITIONAL_OR_KEYWORD,
+                    default=default,
+                    annotation=entry.type,
+                )
+            )
+        cls.__signature__ = Signature(parameters)
 
     def __init__(self, *values: object, **named: object) -> None:
-        given = self.__signature__.bind(*values, **named)
-        given.apply_defaults()
-        vars(self).update(given.arguments)
+        bound = self.__signature__.bind(*values, **named)
+        bound.apply_defaults()
+        vars(self).update(bound.arguments)
         try:
             refuse(*self._faults())
         except ArithmeticError:
@@ -227,16 +242,16 @@ class Record:
 
     def __repr__(self) -> str:
         """Return the call that makes the record, without what has its default value: a machine has many of these."""
-        given = (f"{name}={value!r}" for name, value in self._given().items())
-        return f"{type(self).__name__}({', '.join(given)})"
+        arguments = [f"{name}={value!r}" for name, value in self._not_default().items()]
+        return f"{type(self).__name__}({', '.join(arguments)})"
 
-    def _given(self) -> dict[str, object]:
+    def _not_default(self) -> dict[str, object]:
         """Return the values that are not their defaults, by attribute."""
-        known = vars(self)
+        values = vars(self)
         return {
-            field.name: known[field.name]
-            for field in fields(self)
-            if known[field.name] is not field.default
+            entry.name: values[entry.name]
+            for entry in fields(self)
+            if values[entry.name] is not entry.default
         }
 
     def rules(self) -> Iterator[Rule]:
@@ -244,20 +259,28 @@ class Record:
         return iter(())
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
         """Yield the rules on the values by key, before they become a record."""
         return iter(())
 
     def _faults(self) -> list[Fault]:
         """Return what is wrong with the record of one machine: bounds; if these hold, rules; if these hold, NaN."""
-        keys, own = {name: key for name, key in self.KEYS.items() if key.attribute}, self._given()
-        given = {name: own[key.attribute] for name, key in keys.items() if key.attribute in own}
-        unknown = [name for name, one in given.items() if isinstance(one, float) and one != one]
-        return (
-            _out_of_bounds(keys, given)
-            or broken((*contradictions(keys, given), *self.rules()), self)
-            or [NotANumber((name,), "nan is no number") for name in unknown]
-        )
+        # the values that are not their defaults, by key
+        keys = {name: key for name, key in self.KEYS.items() if key.attribute}
+        by_attribute = self._not_default()
+        values = {
+            name: by_attribute[key.attribute]
+            for name, key in keys.items()
+            if key.attribute in by_attribute
+        }
+        faults = _out_of_bounds(keys, values)
+        if not faults:
+            faults = broken((*contradictions(keys, values), *self.rules()), self)
+        if not faults:
+            for name, value in values.items():
+                if isinstance(value, float) and math.isnan(value):
+                    faults.append(NotANumber((name,), "nan is no number"))
+        return faults
 
     @classmethod
     def from_keys(cls, **values: object) -> Any:
@@ -266,22 +289,22 @@ class Record:
         The same checks as for a machine file: raises RuleError for keys that contradict or require one another, for
         values out of bounds, and for broken rules.
         """
-        given = {name: value for name, value in values.items() if value is not None}
-        refuse(*broken(contradictions(cls.KEYS, given)), *_out_of_bounds(cls.KEYS, given))
-        refuse(*broken(cls.rules_of_keys(given)))
-        return cls.of_keys(**given)
+        values = {name: value for name, value in values.items() if value is not None}
+        refuse(*broken(contradictions(cls.KEYS, values)), *_out_of_bounds(cls.KEYS, values))
+        refuse(*broken(cls.rules_of_keys(values)))
+        return cls.of_keys(**values)
 
     @classmethod
     def of_keys(cls, *args: Any, **values: Any) -> Any:
         """Return the record of the values of its keys: its fields, and those that alternatives determine."""
-        known = {cls.KEYS[name].attribute: value for name, value in values.items()}
-        known.pop("", None)
+        attributes = {cls.KEYS[name].attribute: value for name, value in values.items()}
+        attributes.pop("", None)
         for name, key in cls.KEYS.items():
             if key.gives and name in values:
-                known |= key.gives({**known, **values})
-        return cls(*args, **known)
+                attributes |= key.gives({**attributes, **values})
+        return cls(*args, **attributes)
 
     @classmethod
-    def faults_of_some(cls, given: ValuesByKey) -> list[Fault]:
+    def faults_of_some(cls, values: ValuesByKey) -> list[Fault]:
         """Return what is wrong with values by key of which some are REFUSED: keys that contradict one another."""
-        return broken(contradictions(cls.KEYS, given))
+        return broken(contradictions(cls.KEYS, values))

@@ -48,9 +48,9 @@ def parse_number(text: str) -> float:
     if not number:
         raise UnitError(f"expected a number, got '{text}'{_hint(keyboard_text(text))}")
     value = float(number.group())
-    if math.isfinite(value):
-        return value
-    raise UnitError(f"{number.group()} is too large to compute with")
+    if not math.isfinite(value):
+        raise UnitError(f"{number.group()} is too large to compute with")
+    return value
 
 
 def parse_ratio(text: str) -> float:
@@ -59,16 +59,21 @@ def parse_ratio(text: str) -> float:
     >>> parse_ratio("1/80"), parse_ratio("75 %")
     (0.0125, 0.75)
     """
-    found = None if NUMBER.fullmatch(text) else re.fullmatch(RATIO, keyboard_text(text))
-    if not found:
+    if NUMBER.fullmatch(text):
         return parse_number(text)
-    over, under = parse_number(found[1]), parse_number(found[2] or "100")
-    if under and bool(over) == bool(over / under):
-        return over / under
-    raise UnitError(f"expected a number or a quotient such as 1/200, got '{text}'")
+    quotient = re.fullmatch(RATIO, keyboard_text(text))
+    if not quotient:
+        return parse_number(text)
+    numerator = parse_number(quotient[1])
+    denominator = parse_number(quotient[2] or "100")
+    has_value = denominator and bool(numerator) == bool(numerator / denominator)
+    if not has_value:
+        raise UnitError(f"expected a number or a quotient such as 1/200, got '{text}'")
+    return numerator / denominator
 
 
 def _hint(text: str) -> str:
+    """Return how to write what a text probably means, '' where nothing is likely."""
     if re.fullmatch(r"[-+]?[0-9]+,[0-9]+", text):
         return "; write the decimal point: " + text.replace(",", ".")
     if re.fullmatch(r"[-+]?[0-9.]+(,[0-9.]+)+", text):
@@ -84,11 +89,14 @@ def _hint(text: str) -> str:
     if re.fullmatch(r"[0-9]+(:[0-9]+(\.[0-9]+)?)+", text):
         return "; a ratio is written as one number, such as 5 for 5:1"
     if re.fullmatch(r"[-+]?[0-9]+(\.[0-9]+)?/[0-9]+(\.[0-9]+)?", text):
-        over, under = (float(part) for part in text.split("/"))
-        return f"; write it as one number: {over / under:.12g}" if under else ""
+        numerator, denominator = map(float, text.split("/"))
+        if not denominator:
+            return ""
+        return f"; write it as one number: {numerator / denominator:.12g}"
     if text.lower().strip("+-.") in ("nan", "inf", "infinity"):
         return "; it must be finite"
     number = NUMBER.match(text)
-    if number and re.match(r"\s*[A-Za-z°]", text[number.end() :]) and not re.match("0[box]", text):
-        return f"; it has no unit, write {number.group()}"
-    return ""
+    if number is None or re.match("0[box]", text):
+        return ""
+    has_unit = re.match(r"\s*[A-Za-z°]", text[number.end() :])
+    return f"; it has no unit, write {number.group()}" if has_unit else ""

@@ -58,8 +58,9 @@ class Reading:
         places: Callable[[], Iterable[tuple[str, Path, str]]] = tuple,
         key_values: Callable[[], Mapping[str, Quantity]] = dict,
     ) -> None:
-        self.folder, self.key_values = folder, key_values
-        self._places = places
+        self.folder = folder
+        self.key_values = key_values
+        self._key_places = places
         self.faults: list[Fault] = []
         self.alike: dict[Path, Path] = {}
         """Path of a mapping that copies the values of another one (`like`) -> path of the other one."""
@@ -71,16 +72,24 @@ class Reading:
         below. A key of that name elsewhere means something else.
         """
         here = tuple(step for step in path if isinstance(step, str))
-        if here[:1] == ("cylinders",):  # the places are those within a cylinder
-            here = here[2 if here[1:2] == ("each",) else 1 :]
-        found = dict.fromkeys(
-            (words, there) for words, there, name in self._places() if name == key
-        )
-        near = [
-            words for words, there in found if here[: len(there)] == there or there[:-1] == here
-        ]
-        below = [words for words, there in found if there[: len(here)] == here]
-        listed = (near or below)[:3]
+        # the paths of keys are those within a cylinder
+        if here[:2] == ("cylinders", "each"):
+            here = here[2:]
+        elif here[:1] == ("cylinders",):
+            here = here[1:]
+        # where a key of this name is valid: near the path, or further below
+        near: dict[str, None] = {}
+        below: dict[str, None] = {}
+        for words, there, name in self._key_places():
+            if name != key:
+                continue
+            is_above = here[: len(there)] == there
+            is_directly_below = there[:-1] == here
+            if is_above or is_directly_below:
+                near[words] = None
+            if there[: len(here)] == here:
+                below[words] = None
+        listed = list(near or below)[:3]
         return "it belongs " + " or ".join(listed) if listed else ""
 
     def note(self, fault: Fault) -> Reported:
@@ -88,26 +97,26 @@ class Reading:
 
         A fault in a copied value is reported once, at the original.
         """
-        if self.alike and self._is_known(fault):
+        if self._is_noted_at_original(fault):
             return REFUSED
-        full = len(self.faults) + 1 >= FAULT_LIMIT
-        if full:
-            fault = fault._replace(
-                message=f"{fault.message} (reading stopped after {FAULT_LIMIT} faults)"
-            )
+        is_last = len(self.faults) + 1 >= FAULT_LIMIT
+        if is_last:
+            message = f"{fault.message} (reading stopped after {FAULT_LIMIT} faults)"
+            fault = fault._replace(message=message)
         self.faults.append(fault)
-        if full:
+        if is_last:
             raise StopReading
         return REFUSED
 
-    def _is_known(self, fault: Fault) -> bool:
+    def _is_noted_at_original(self, fault: Fault) -> bool:
         """Return whether a fault is in a copied value and has been reported at the original."""
-        others = (
-            fault._replace(path=other + fault.path[len(path) :])
-            for path, other in self.alike.items()
-            if fault.path[: len(path)] == path
-        )
-        return any(other in self.faults or self._is_known(other) for other in others)
+        for copy, original in self.alike.items():
+            if fault.path[: len(copy)] != copy:
+                continue
+            fault_of_original = fault._replace(path=original + fault.path[len(copy) :])
+            if fault_of_original in self.faults or self._is_noted_at_original(fault_of_original):
+                return True
+        return False
 
     def fault(self, path: Path, message: str, at_key: bool = False) -> Reported:
         """Keep a fault at a path of the tree and return REFUSED."""
@@ -124,11 +133,15 @@ def text_in_one_line(text: str, most: int = 60) -> str:
     """Write a text from the file so that it fits into one line of a message, without control characters."""
     if text.isprintable() and len(text) <= most:
         return text
-    flat = "".join(
-        c if c.isprintable() else " " if c in "\t\r\n" else f"\\u{ord(c):04x}"
-        for c in text[: most + 1]
-    )
-    return flat if len(flat) <= most else flat[: most - 3] + "…"
+    line = ""
+    for character in text[: most + 1]:
+        if character.isprintable():
+            line += character
+        elif character in "\t\r\n":
+            line += " "
+        else:
+            line += f"\\u{ord(character):04x}"
+    return line if len(line) <= most else line[: most - 3] + "…"
 
 
 def node_kind(value: Node) -> str:
@@ -147,9 +160,9 @@ def is_nothing(value: Node) -> bool:
 
 def glued_hint(value: Node) -> str:
     """Return a hint if a value seems to contain a key without a space after its colon, or an empty text."""
-    found = re.search(r"\b[A-Za-z_]\w*:\S", value) if isinstance(value, str) else None
-    return (
-        f"; perhaps a space is missing after the colon of '{found.group().split(':')[0]}'"
-        if found
-        else ""
-    )
+    if not isinstance(value, str):
+        return ""
+    glued_key = re.search(r"\b([A-Za-z_]\w*):\S", value)
+    if glued_key is None:
+        return ""
+    return f"; perhaps a space is missing after the colon of '{glued_key[1]}'"

@@ -27,10 +27,10 @@ FieldValue = Any
 
 def first_of(rules: Iterable[Rule]) -> Iterator[Rule]:
     """Yield rules so that only the first broken one counts."""
-    before: Truth = False
+    is_broken_before: Truth = False
     for rule in rules:
-        yield rule._replace(broken=rule.broken & np.logical_not(before))
-        before = before | rule.broken
+        yield rule._replace(broken=rule.broken & np.logical_not(is_broken_before))
+        is_broken_before = is_broken_before | rule.broken
 
 
 def field(
@@ -54,12 +54,19 @@ def field(
     Traceback (most recent call last):
     kurbel.errors.RuleError: height: -0.1 is too small; it must be more than 0
     """
-    if isinstance(default, (int, float)):
-        absent = absent or (f"{default:g}" if isinstance(default, float) else str(default).lower())
-    elif default == ():
-        absent = absent or "none"
+    if not absent:
+        absent = _default_text(default)
     declared = alternative(form, text, symbol, absent=absent, **more)
     return dataclasses.field(default=default, metadata={"key": declared})
+
+
+def _default_text(default: object) -> str:
+    """Return what holds without an entry of this default, for pages; '' where only its sentence can say it."""
+    if isinstance(default, float):
+        return f"{default:g}"
+    if isinstance(default, int):  # a truth, too
+        return str(default).lower()
+    return "none" if default == () else ""
 
 
 def alternative(form: Likeness, text: str, symbol: str = "", *, key: str = "", **more: Any) -> Key:
@@ -68,5 +75,5 @@ def alternative(form: Likeness, text: str, symbol: str = "", *, key: str = "", *
     key: its name in the file, '' for that of the attribute, until the class of the record is made; more: of `Key`, and
     bounds of `form_of`.
     """
-    of_key = {name: more.pop(name) for name in Key._fields if name in more}
-    return Key(form_of(form, more), text, symbol, attribute=key, **of_key)
+    key_options = {name: more.pop(name) for name in Key._fields if name in more}
+    return Key(form_of(form, more), text, symbol, attribute=key, **key_options)

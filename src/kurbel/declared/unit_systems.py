@@ -49,8 +49,8 @@ def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
     if isinstance(units, str):
         return units
     for unit in reversed(units[1:]):
-        up, down = unit_factor(unit, kind)
-        if abs(largest) >= _TAKEN_FROM.get(unit, up / down):
+        multiplier, divisor = unit_factor(unit, kind)
+        if abs(largest) >= _TAKEN_FROM.get(unit, multiplier / divisor):
             return unit
     return units[0]
 
@@ -71,8 +71,10 @@ def convert(value: Any, kind: str, unit: str) -> Any:
     """Return base values, a number or an array, in a unit of their kind."""
     if not unit:
         return value
-    up, down = unit_factor(unit, kind)
-    value, zero = value if up == down else value / up * down, zero_of(unit)
+    multiplier, divisor = unit_factor(unit, kind)
+    if multiplier != divisor:
+        value = value / multiplier * divisor
+    zero = zero_of(unit)
     return value - zero if zero else value
 
 

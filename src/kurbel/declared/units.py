@@ -221,7 +221,8 @@ def range_of(kind: str) -> str:
     '0 or 1e-09 to 1e+09 m'
     """
     smallest, largest, _, unit, *_ = KINDS[kind]
-    return f"{f'0 or {smallest:g}' if smallest else '0'} to {largest:g} {unit}".rstrip()
+    lower = f"0 or {smallest:g}" if smallest else "0"
+    return f"{lower} to {largest:g} {unit}".rstrip()
 
 
 GRAVITY = 9.80665
@@ -297,12 +298,10 @@ _PREFIXES: dict[str, UnitFactor] = {
     "m": (1, 1e3),
     "u": (1, 1e6),
 }
-_FACTORS |= {
-    prefix + name: (up * _FACTORS[name][0], down * _FACTORS[name][1])
-    for name in ("m", "g", "Hz", "N", "Pa", "bar", "Nm", "J", "W")
-    for prefix, (up, down) in _PREFIXES.items()
-    if prefix + name != "kg"
-}
+for _name in ("m", "g", "Hz", "N", "Pa", "bar", "Nm", "J", "W"):
+    _multiplier, _divisor = _FACTORS[_name]
+    for _prefix, (_more, _less) in _PREFIXES.items():
+        _FACTORS.setdefault(_prefix + _name, (_more * _multiplier, _less * _divisor))
 
 _ZEROS = {"°C": 273.15, "°F": 459.67}
 """Temperatures that count from elsewhere than from absolute zero, and by how many of their degrees."""
@@ -332,50 +331,70 @@ ZEROED_UNITS = {
 
 
 @cache
-def _units_of(kind: str) -> dict[str, UnitFactor]:
-    """Return the units of a kind by name."""
+def _names_of(kind: str) -> tuple[str, ...]:
+    """Return the names of the units of a kind."""
     names: list[str] = []
     for listed in KINDS[kind].units.split("; "):
-        first, sign, second, *_ = *re.split(r" ([*/]) ", listed), "", ""
-        joint = sign.replace("*", " ")
-        names += [one + joint + other for one in first.split(", ") for other in second.split(", ")]
-    return {name: _factor(name, kind) for name in names}
+        product = re.fullmatch(r"(.*) ([*/]) (.*)", listed)
+        if product is None:
+            names += listed.split(", ")
+            continue
+        sign = "/" if product[2] == "/" else " "
+        for first in product[1].split(", "):
+            names += [first + sign + second for second in product[3].split(", ")]
+    return tuple(dict.fromkeys(names))
 
 
 def _factor(unit: str, kind: str) -> UnitFactor:
     """Return multiplier and divisor of a product of single units, such as `kgf m/s/cm2`."""
     if kind == "spring":  # height over pressure, which may be a quotient itself
         height, _, pressure = unit.partition("/")
-        (up, down), (more, less) = _factor(height, "length"), _factor(pressure, "pressure")
-        return up * less, down * more
-    up = down = 1.0
-    for stroke, text in re.findall(r"(/?)([^ /]+)", re.sub("(long|short) ", r"\1_", unit)):
-        base, power = re.findall(r"^(.*?\D|1)(-?\d)?$", text)[0]
-        more, less = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS[base]
-        times = int(power or 1)
-        if (times < 0) != bool(stroke):
+        multiplier, divisor = _factor(height, "length")
+        pressure_multiplier, pressure_divisor = _factor(pressure, "pressure")
+        return multiplier * pressure_divisor, divisor * pressure_multiplier
+    multiplier = 1.0
+    divisor = 1.0
+    for slash, text in re.findall(r"(/?)([^ /]+)", re.sub("(long|short) ", r"\1_", unit)):
+        base, digits = re.findall(r"^(.*?\D|1)(-?\d)?$", text)[0]
+        factor = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS.get(base)
+        if factor is None:
+            raise LookupError(
+                f"the unit '{base}' in {unit} of the kind {kind} has no factor: add its multiplier and divisor "
+                "to _FACTORS of kurbel.declared.units, or take it out of KINDS"
+            )
+        more, less = factor
+        power = int(digits or 1)
+        is_divisor = (power < 0) != bool(slash)
+        if is_divisor:
             more, less = less, more
-        up, down = up * more ** abs(times), down * less ** abs(times)
-    return up, down
+        multiplier *= more ** abs(power)
+        divisor *= less ** abs(power)
+    return multiplier, divisor
+
+
+_SAME_SIGNS = (
+    ("⁻¹", "-1"),
+    ("²", "2"),
+    ("³", "3"),
+    ("^", ""),
+    ("·", " "),
+    ("*", " "),
+    ("µ", "u"),
+    ("μ", "u"),
+)
+"""Signs of units, and how they are written here."""
 
 
 def _normal(unit: str) -> str:
     """Write `kg·m²`, `kg*m^2` and `kg  m2` alike."""
     unit = keyboard_text(unit)
-    for sign, ours in (
-        ("⁻¹", "-1"),
-        ("²", "2"),
-        ("³", "3"),
-        ("^", ""),
-        ("·", " "),
-        ("*", " "),
-        ("µ", "u"),
-        ("μ", "u"),
-    ):
-        unit = unit.replace(sign, ours)
-    unit = re.sub(r"\bdeg ?(?=[CF]$)", "°", unit.replace("/(kg K)", "/kg K"))
+    for sign, same in _SAME_SIGNS:
+        unit = unit.replace(sign, same)
+    unit = unit.replace("/(kg K)", "/kg K")
+    unit = re.sub(r"\bdeg ?(?=[CF]$)", "°", unit)
     unit = re.sub(r" (?=(H2O|Hg)\b)", "", unit)
-    unit = re.sub(r"\binch(es)?\b", "in", re.sub(r"\b(foot|feet)\b", "ft", unit))
+    unit = re.sub(r"\b(foot|feet)\b", "ft", unit)
+    unit = re.sub(r"\binch(es)?\b", "in", unit)
     return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))
 
 
@@ -385,13 +404,15 @@ def unit_factor(unit: str, kind: str) -> UnitFactor:
 
     Raises UnitError with the known units and, where the unit is one of another kind, that kind.
     """
-    known, name = _units_of(kind), _normal(unit)
-    if name in known:
-        return known[name]
-    names = ", ".join([*known][:8]) + (", …" if len(known) > 8 else "")
-    raise UnitError(
-        f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {names}){unit_hint(name, kind)}"
-    )
+    names = _names_of(kind)
+    name = _normal(unit)
+    if name in names:
+        return _factor(name, kind)
+    listed = ", ".join(names[:8])
+    if len(names) > 8:
+        listed += ", …"
+    hint = unit_hint(name, kind)
+    raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {listed}){hint}")
 
 
 def kind_name(kind: str) -> str:
@@ -407,16 +428,20 @@ _QUOTIENT = rf"{NUMBER.pattern}\s*/\s*{NUMBER.pattern}(?=\s*[A-Za-z°]|$)"
 
 def _split(text: str) -> tuple[float, str] | None:
     """Return number and unit of a value in plain signs, None where it begins with no number."""
-    if "/" in text and (found := re.match(_INCHES, text)):
-        sign, whole, above, below = found.groups()
-        value = float(f"{sign}1") * (int(whole or 0) * int(below) + int(above)) / int(below)
-    elif "/" in text and (found := re.match(_QUOTIENT, text)):
-        value = parse_ratio(found.group())
-    elif found := NUMBER.match(text):
-        value = float(found.group())
-    else:
+    if "/" in text:
+        inches = re.match(_INCHES, text)
+        if inches:
+            sign, inch, numerator, denominator = inches.groups()
+            parts = int(inch or 0) * int(denominator) + int(numerator)
+            value = float(f"{sign}1") * parts / int(denominator)
+            return value, text[inches.end() :].strip()
+        quotient = re.match(_QUOTIENT, text)
+        if quotient:
+            return parse_ratio(quotient.group()), text[quotient.end() :].strip()
+    number = NUMBER.match(text)
+    if number is None:
         return None
-    return value, text[found.end() :].strip()
+    return float(number.group()), text[number.end() :].strip()
 
 
 def parse_quantity(text: str, kind: str) -> float:
@@ -430,42 +455,38 @@ def parse_quantity(text: str, kind: str) -> float:
     if kind == "ratio":
         return parse_ratio(text)
     stripped = keyboard_text(text)
-    found = _split(stripped)
-    if not found:
-        raise UnitError(
-            f"expected a number with its unit, such as '{kind_example(kind)}', got '{text}'"
-        )
-    value, unit = found
+    number_and_unit = _split(stripped)
+    expected = f"expected a number with its unit, such as '{kind_example(kind)}'"
+    if number_and_unit is None:
+        raise UnitError(f"{expected}, got '{text}'")
+    value, unit = number_and_unit
+    # what is no unit after the number
     if not unit:
-        likely = (one for one, least in _FITTING.get(kind, ()) if abs(value) >= least)
-        fitting = next(likely, unit_example(kind))
+        fitting = _fitting_unit(value, kind)
         raise UnitError(
             f"{stripped} has no unit; write it with one, such as '{stripped} {fitting}'"
         )
     if re.match(r",[0-9]+(?![0-9.,])", unit):
         raise UnitError(f"'{stripped}' has a decimal comma; write {stripped.replace(',', '.', 1)}")
-    if (
-        between := "commas"
-        if re.match(",[0-9]", unit)
-        else "spaces"
-        if re.match("[0-9]{3}(?![0-9])", unit)
-        else ""
-    ):
-        raise UnitError(f"'{stripped}' has {between} between thousands; leave them out")
+    if re.match(",[0-9]", unit):
+        raise UnitError(f"'{stripped}' has commas between thousands; leave them out")
+    if re.match("[0-9]{3}(?![0-9])", unit):
+        raise UnitError(f"'{stripped}' has spaces between thousands; leave them out")
     if unit[0] in "0123456789._:" and not unit.startswith("1/"):
-        raise UnitError(
-            f"expected a number with its unit, such as '{kind_example(kind)}', got '{stripped}'"
-        )
-    up, down = unit_factor(unit, kind)
-    value += zero_of(unit)
-    if not math.isfinite(value * up / down):
+        raise UnitError(f"{expected}, got '{stripped}'")
+    # its value in the base
+    multiplier, divisor = unit_factor(unit, kind)
+    in_base = (value + zero_of(unit)) * multiplier / divisor
+    if not math.isfinite(in_base):
         raise UnitError(f"{stripped} is too large to compute with")
-    return value * up / down
+    return in_base
 
 
 def zero_of(unit: str) -> float:
     """Return how far below its 0 a unit has the 0 of its base, in that unit: 273.15 of °C, 0 of most."""
-    return _ZEROS.get(unit) or _ZEROS.get(_normal(unit), 0.0) if unit[-1:] in "CF" else 0.0
+    if unit[-1:] not in "CF":
+        return 0.0
+    return _ZEROS.get(_normal(unit), 0.0)
 
 
 _FITTING = {
@@ -476,6 +497,14 @@ _FITTING = {
     "speed": (("rpm", 10), ("rps", 0)),
 }
 """Kind -> units with the bare numbers from which on they are likely, the largest first."""
+
+
+def _fitting_unit(value: float, kind: str) -> str:
+    """Return the unit that a bare number was probably meant in."""
+    for unit, least in _FITTING.get(kind, ()):
+        if abs(value) >= least:
+            return unit
+    return unit_example(kind)
 
 
 def written_unit(text: str) -> str:
@@ -505,14 +534,15 @@ def kinds() -> tuple[str, ...]:
 
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
-    return (*_units_of(kind), *(ZEROED_UNITS if kind == "pressure" else ()))
+    names = _names_of(kind)
+    return (*names, *ZEROED_UNITS) if kind == "pressure" else names
 
 
 def listed_units(kind: str) -> tuple[str, ...]:
     """Return the units of a kind that people write: products with micrometres, kilometres, decimetres are read, too."""
-    written = ("kg/dm3", "km/h", "km/s", "um/s")
+    usual = ("kg/dm3", "km/h", "km/s", "um/s")
     rare = re.compile(r"(?=.*[ /]).*\b(um|km|dm)[23]?\b")
-    return tuple(name for name in unit_names(kind) if name in written or not rare.match(name))
+    return tuple(name for name in unit_names(kind) if name in usual or not rare.match(name))
 
 
 _SPOKEN = (
@@ -530,21 +560,32 @@ def unit_hint(name: str, kind: str) -> str:
         return "; write feet and inches in one unit, such as '90 in' for 7 ft 6 in"
     if kind == "spring":
         return "; it is height over pressure: a spring of 60 lb per inch is '1/60 in/psi'"
-    if number := NUMBER.match(name):
+    number = NUMBER.match(name)
+    if number:
         return f"; write the unit alone, without {number.group()}"
     if name in (*ZEROED_UNITS, "atu"):
         return "; whether a pressure is gauge or absolute is set by the key 'pressures'"
     if name in ("ton", "tons", "tonf"):
-        f = name.removeprefix("ton").removeprefix("s")
-        return f"; a ton is 't{f}' (1000 kg{f}), 'long ton{f}' (2240 lb{f}) or 'short ton{f}' (2000 lb{f}): write which"
-    known = unit_names(kind)
+        f = "f" if name == "tonf" else ""
+        return (
+            f"; a ton is 't{f}' (1000 kg{f}), 'long ton{f}' (2240 lb{f}) "
+            f"or 'short ton{f}' (2000 lb{f}): write which"
+        )
+    # a mass in place of a force
+    units = unit_names(kind)
     weight = re.sub(r"\bkg\b", "kgf", name)
-    if weight != name and weight in known:
+    if weight != name and weight in units:
         return f"; kg is a mass, write '{weight}'"
-    ours = name
+    # as people say it, or in the wrong case
+    written_name = name
     for spoken, written in _SPOKEN:
-        ours = re.sub(spoken, written, ours, flags=re.IGNORECASE)
-    if alike := [unit for unit in known if unit.lower() == ours.lower()]:
-        return f"; did you mean '{alike[0]}'?"
-    of = [kind_name(other) for other in kinds() if {name, ours} & {*unit_names(other)}]
-    return f"; {name} is a unit of {of[0]}" if of else ""
+        written_name = re.sub(spoken, written, written_name, flags=re.IGNORECASE)
+    for unit in units:
+        if unit.lower() == written_name.lower():
+            return f"; did you mean '{unit}'?"
+    # a unit of another kind
+    for other in kinds():
+        names = unit_names(other)
+        if name in names or written_name in names:
+            return f"; {name} is a unit of {kind_name(other)}"
+    return ""

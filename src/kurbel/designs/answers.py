@@ -28,7 +28,8 @@ from kurbel.quantities import KEY_VALUES, every_quantity
 from kurbel.quantity import Quantity, ambiguity, in_sentences
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
-from kurbel.tables.frame import Subject, too_large
+from kurbel.tables.frame import Subject
+from kurbel.tables.shown import too_large
 
 _WHOLE = "whole machine"
 """The whole machine, as a report names it."""

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.structures import Maker, ReadMapping
+from kurbel.declared.forms.making import Maker
+from kurbel.declared.forms.structures import ReadMapping
 from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import Reading, StopReading
@@ -24,6 +25,7 @@ from kurbel.designs.plan import Input
 from kurbel.errors import KurbelError, MachineFileError, Path, UnitError, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
+from kurbel.machine.cylinder import pin_lag
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import path_of, value_at
 from kurbel.machine_file.reader import read_values, reading_of
@@ -281,8 +283,9 @@ def _with_same_branches(machine: Machine, indices: Indices) -> list[Indices]:
 
     changed(machine, coded)
     for cylinder, other in combinations(machine.cylinders, 2):
+        first = machine.cylinders[0]
         bank_difference = cylinder.bank_angle - other.bank_angle
-        pin_difference = cylinder.crank_position - other.crank_position - bank_difference
+        pin_difference = pin_lag(cylinder, first) - pin_lag(other, first)
         axial_position = 0.0 if cylinder.axial_position is None else cylinder.axial_position
         other_position = 0.0 if other.axial_position is None else other.axial_position
         differences = (pin_difference, bank_difference, axial_position - other_position)

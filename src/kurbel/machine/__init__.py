@@ -323,10 +323,12 @@ class Machine(Record):
                     if cylinder.crank_position is None
                     else cylinder,
                 )
-            else:
+            elif cylinders or firing_order:
                 from kurbel.machine.several import in_order
 
                 given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
+            else:
+                given = ()
             if shaft:
                 keys["shaft"] = ShaftLine((), ()) if faults else line_of(shaft, _names(given))
             named = tuple(replace(one, name=name) for one, name in zip(given, _names(given)))

@@ -237,6 +237,21 @@ class Cylinder(Record):
                 )
 
 
+def crank_lag(cylinder: Cylinder, first: Cylinder) -> float:
+    """Return δ = β + φ_i,1 − φ_i in degrees, by which the own crank angle of a cylinder lags that of the first.
+
+    β counts from inner dead centre to inner dead centre, the crank angle from where the pin passes the stroke line.
+    """
+    inner = cylinder.mechanism.dead_centres()[0]
+    first_inner = first.mechanism.dead_centres()[0]
+    return cylinder.crank_position + (first_inner - inner)
+
+
+def pin_lag(cylinder: Cylinder, first: Cylinder) -> float:
+    """Return ζ = δ − γ in degrees, by which the crank pin of a cylinder lags that of the first on the shaft."""
+    return crank_lag(cylinder, first) - cylinder.bank_angle
+
+
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
     """Yield the rule that no two cylinders are at the same place along the shaft and on the same stroke line."""
     message = "is at the place of '{other}', {place:length} along the shaft, on the same stroke line; give another"

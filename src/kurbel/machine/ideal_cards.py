@@ -135,8 +135,8 @@ class Steam(ChamberCard, Record):
     @property
     def events(self) -> list[str]:
         """The keys of the events that are given."""
-        given = self._given()
-        return [key for key in ("cut_off", "release", "compression", "lead") if key in given]
+        values = self._not_default()
+        return [key for key in ("cut_off", "release", "compression", "lead") if key in values]
 
     def rules_of_events(self, valve_compresses: Truth | None) -> Iterator[Rule]:
         """Yield events that are missing without a valve, or given beside one; of the clearance the rule of the card."""

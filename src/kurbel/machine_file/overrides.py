@@ -16,7 +16,7 @@ from kurbel.declared.reading import (
     node_kind,
     text_in_one_line,
 )
-from kurbel.errors import Fault, MachineFileError, Path, UsageError, path_text
+from kurbel.errors import Fault, MachineFileError, Path, Step, UsageError, path_text
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import decode
@@ -28,59 +28,60 @@ _FIGURE = re.compile(rf"\s*(limits|expect)\s*\.(.+?)(?:[.[]({_NUMBER})]?)?\s*", 
 
 
 class Override(NamedTuple):
-    """One value that replaces that of the file: as it was given, its path, and the value.
+    """One value that replaces that of the file: its text, for messages, its path, and the value.
 
-    place: its own path in the file, as in a load case; () for one from an option.
+    path_in_file: the path of the override itself, as in a load case; () for one from an option.
     """
 
-    given: str
+    text: str
     path: Path
     value: Node
-    place: Path = ()
+    path_in_file: Path = ()
 
 
 def read_override(text: str, option: str = "--set") -> Override:
     """Return the override of a text such as `cylinders.0.bore=450 mm`; raises UsageError.
 
     >>> read_override("cylinders.0.bore=450 mm")
-    Override(given='--set cylinders.0.bore=450 mm', path=('cylinders', 0, 'bore'), value='450 mm', place=())
+    >>> override = read_override("cylinders.0.bore=450 mm")
+    >>> override.text, override.path, override.value
+    ('--set cylinders.0.bore=450 mm', ('cylinders', 0, 'bore'), '450 mm')
     """
-    given = f"{option} {text_in_one_line(text)}"
+    written = f"{option} {text_in_one_line(text)}"
     key, equals, value = text.partition("=")
     path = path_of(key)
     if not equals or "" in path:
-        one = f"{option} bore='450 mm'"
-        _refused(
-            given,
-            f"write KEY=VALUE, such as {one}, of one of several cylinders cylinders.0.bore='450 mm'",
-        )
+        example = f"{option} bore='450 mm', of one of several cylinders cylinders.0.bore='450 mm'"
+        _refuse(written, f"write KEY=VALUE, such as {example}")
     if any(str(step).endswith(":") for step in path):
-        _refused(given, "write KEY=VALUE, without the colon")
+        _refuse(written, "write KEY=VALUE, without the colon")
     reading = Reading()
     try:  # half of a surrogate pair is no text: let the decoder say so
         tree = parse(decode(option, value.encode("utf-8", "surrogatepass")).text, reading)
     except MachineFileError as error:
         reading.faults += error.faults
     if reading.faults:
-        _refused(given, reading.faults[0].message)
-    return Override(given, path, tree)
+        _refuse(written, reading.faults[0].message)
+    return Override(written, path, tree)
 
 
 def _read_all(texts: Sequence[str], option: str) -> list[Override]:
     """Return the overrides that texts of an option are; raises UsageError for all that are none."""
-    found, wrong = [], list[str]()
+    overrides: list[Override] = []
+    messages: list[str] = []
     for text in texts:
         try:
-            found.append(read_override(text, option))
+            overrides.append(read_override(text, option))
         except UsageError as error:
-            wrong.append(str(error))
-    if wrong:
-        raise UsageError("; ".join(wrong))
-    return found
+            messages.append(str(error))
+    if messages:
+        raise UsageError("; ".join(messages))
+    return overrides
 
 
-def _refused(given: str, why: str) -> NoReturn:
-    raise UsageError(f"{given}: {why}")
+def _refuse(override: str, reason: str) -> NoReturn:
+    """Raise UsageError for an override."""
+    raise UsageError(f"{override}: {reason}")
 
 
 def path_of(key: str) -> Path:
@@ -89,11 +90,16 @@ def path_of(key: str) -> Path:
     >>> path_of("cylinders[0].bore"), path_of("limits.machine.T_max")
     (('cylinders', 0, 'bore'), ('limits', 'machine.T_max'))
     """
-    if found := _FIGURE.fullmatch(key):
-        steps = [group.strip() for group in found.groups() if group is not None]
+    figure = _FIGURE.fullmatch(key)
+    if figure:
+        names = [group for group in figure.groups() if group is not None]
     else:
-        steps = [step.strip() for step in key.replace("[", ".").replace("]", "").split(".")]
-    return tuple(int(step) if re.fullmatch(_NUMBER, step) else step for step in steps)
+        names = key.replace("[", ".").replace("]", "").split(".")
+    steps: list[Step] = []
+    for name in map(str.strip, names):
+        is_number = re.fullmatch(_NUMBER, name)
+        steps.append(int(name) if is_number else name)
+    return tuple(steps)
 
 
 def dotted(path: Path) -> str:
@@ -108,54 +114,53 @@ def set_over(tree: Node, origin: Origin) -> list[Override]:
     """
     if not isinstance(tree, dict):
         return []
-    overrides = [
-        *(_of_case(tree, origin.case) if origin.case else ()),
-        *_read_all(origin.overrides, "--set"),
-        *_read_all(origin.varied, "--vary"),
-    ]
+    overrides: list[Override] = []
+    if origin.case:
+        overrides += _case_overrides(tree, origin.case)
+    overrides += _read_all(origin.overrides, "--set")
+    overrides += _read_all(origin.varied, "--vary")
     for override in overrides:
         node: Node = tree
-        for place in range(len(override.path)):
+        for depth in range(len(override.path)):
             if node is not REFUSED:
-                node = _step(node, override, place)
+                node = _step(node, override, depth)
     return overrides
 
 
 def _cases(tree: Tree) -> dict[str, Path]:
     """Return the paths of the load cases of a file by their names."""
     cases = tree.get("cases")
-    listed = cases if isinstance(cases, list) else ()
+    if not isinstance(cases, list):
+        return {}
     return {
-        str(one.get("name")): ("cases", index)
-        for index, one in enumerate(listed)
-        if isinstance(one, dict)
+        str(case.get("name")): ("cases", index)
+        for index, case in enumerate(cases)
+        if isinstance(case, dict)
     }
 
 
-def _of_case(tree: Tree, name: str) -> Iterator[Override]:
-    """Yield the overrides of a load case of a file; raises UsageError where there is none of this name."""
-    named = _cases(tree)
-    if name not in named:
-        none = (
-            "'cases' of the file is no list of cases; see kurbel check" if "cases" in tree else ""
-        )
-        there = (
-            f"there are {', '.join(map(text_in_one_line, named))}"
-            if named
-            else none or "the file has no 'cases'"
-        )
-        raise UsageError(
-            f"--case {text_in_one_line(name)}: no such load case{did_you_mean(name, tuple(named))}; {there}"
-        )
-    place: Path = (*named[name], "set")
-    values = value_at(tree, place)
-    for key, value in values.items() if isinstance(values, dict) else ():
-        yield Override(
-            f"case {text_in_one_line(name)}: {text_in_one_line(key)}",
-            path_of(key),
-            value,
-            (*place, key),
-        )
+def _case_overrides(tree: Tree, name: str) -> list[Override]:
+    """Return the overrides of a load case of a file; raises UsageError where there is none of this name."""
+    cases = _cases(tree)
+    written_name = text_in_one_line(name)
+    if name not in cases:
+        if cases:
+            available = f"there are {', '.join(map(text_in_one_line, cases))}"
+        elif "cases" in tree:
+            available = "'cases' of the file is no list of cases; see kurbel check"
+        else:
+            available = "the file has no 'cases'"
+        hint = did_you_mean(name, tuple(cases))
+        raise UsageError(f"--case {written_name}: no such load case{hint}; {available}")
+    path: Path = (*cases[name], "set")
+    values = value_at(tree, path)
+    if not isinstance(values, dict):
+        return []
+    overrides = []
+    for key, value in values.items():
+        text = f"case {written_name}: {text_in_one_line(key)}"
+        overrides.append(Override(text, path_of(key), value, (*path, key)))
+    return overrides
 
 
 def value_at(tree: Any, path: Path) -> Node | None:
@@ -168,49 +173,63 @@ def value_at(tree: Any, path: Path) -> Node | None:
     return tree
 
 
-def _step(node: Node, one: Override, place: int) -> Node:
+def _step(node: Node, override: Override, depth: int) -> Node:
     """Go one step down, or set the value at the last one, and return what is there; what leads to it is made."""
-    step, last = one.path[place], place == len(one.path) - 1
-    above = dotted(one.path[:place])
+    path = override.path
+    is_last = depth == len(path) - 1
+    above = dotted(path[:depth])
     if isinstance(node, list):
-        if not isinstance(step, int) or step >= len(node):
-            names = [item.get("name") if isinstance(item, dict) else None for item in node]
-            meant = names.index(step) if step in names else len(node) - 1
-            instead = dotted((*one.path[:place], meant, *one.path[place + 1 :]))
-            _refused(
-                one.given,
-                f"'{above}' is a list; its items are 0 to {len(node) - 1}: write {instead}=…",
-            )
-        if last:
-            node[step] = one.value
-        return node[step]
+        index = _index(node, override, depth)
+        if is_last:
+            node[index] = override.value
+        return node[index]
     if not isinstance(node, dict):
-        mapping = f"{one.path[place - 1]}: {{…, {step}: …}}"
+        mapping = f"{path[depth - 1]}: {{…, {path[depth]}: …}}"
         advice = f"if it may be a mapping, write it as one in the file, '{mapping}'"
-        _refused(
-            one.given, f"there is nothing below '{above}', which is {node_kind(node)}; {advice}"
-        )
-    if last:
-        node[str(step)] = one.value
-    elif is_nothing(node.get(str(step), Plain())):
-        if isinstance(one.path[place + 1], int):
-            _refused(one.given, f"there is no list '{dotted(one.path[: place + 1])}' in the file")
-        node[str(step)] = {}
-    return node[str(step)]
+        reason = f"there is nothing below '{above}', which is {node_kind(node)}; {advice}"
+        _refuse(override.text, reason)
+    key = str(path[depth])
+    if is_last:
+        node[key] = override.value
+    elif is_nothing(node.get(key, Plain())):
+        is_list_needed = isinstance(path[depth + 1], int)
+        if is_list_needed:
+            _refuse(override.text, f"there is no list '{dotted(path[: depth + 1])}' in the file")
+        node[key] = {}
+    return node[key]
 
 
-def named(fault: Fault, overrides: Sequence[Override]) -> Fault:
+def _index(items: list[Node], override: Override, depth: int) -> int:
+    """Return the index of an item of a list; raises UsageError for a step that is none."""
+    step = override.path[depth]
+    last = len(items) - 1
+    if isinstance(step, int) and step <= last:
+        return step
+    # the item of this name was meant, or the last one
+    meant = last
+    for index, item in enumerate(items):
+        if isinstance(item, dict) and item.get("name") == step:
+            meant = index
+            break
+    above, below = override.path[:depth], override.path[depth + 1 :]
+    written = dotted((*above, meant, *below))
+    reason = f"'{dotted(above)}' is a list; its items are 0 to {last}: write {written}=…"
+    _refuse(override.text, reason)
+
+
+def with_override(fault: Fault, overrides: Sequence[Override]) -> Fault:
     """Return a fault with the override that caused it; any other fault with a list of all overrides."""
-    for one in overrides:
-        length = len(one.path)
-        if [*map(str, fault.path[:length])] == [*map(str, one.path)]:
-            return (
-                fault._replace(path=(*one.place, *fault.path[length:]))
-                if one.place
-                else fault._replace(override=one.given)
-            )
-    listed = f" (with {', '.join(override.given for override in overrides)})" if overrides else ""
-    return fault._replace(message=fault.message + listed)
+    for override in overrides:
+        length = len(override.path)
+        is_cause = [*map(str, fault.path[:length])] == [*map(str, override.path)]
+        if is_cause and override.path_in_file:
+            return fault._replace(path=(*override.path_in_file, *fault.path[length:]))
+        if is_cause:
+            return fault._replace(override=override.text)
+    if not overrides:
+        return fault
+    texts = ", ".join(override.text for override in overrides)
+    return fault._replace(message=f"{fault.message} (with {texts})")
 
 
 # what a file gives, key by key, as it was read, with overrides and without defaults
@@ -219,7 +238,7 @@ _MOST = 12
 _LONGEST = 160
 
 
-def given(origin: Origin) -> tuple[tuple[str, str], ...]:
+def key_texts(origin: Origin) -> tuple[tuple[str, str], ...]:
     """Return every key of a machine file, by its dotted path, with its value in one line."""
     return tuple((path_text(path), _short(value)) for path, value in leaves(tree_of(origin)))
 
@@ -237,11 +256,13 @@ def leaves(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
     if isinstance(node, dict):
         for name, below in node.items():
             yield from leaves(below, (*path, name))
-    elif isinstance(node, list) and any(isinstance(one, dict) for one in node):
-        for number, below in enumerate(node):
-            yield from leaves(below, (*path, number))
-    else:
-        yield path, node
+        return
+    has_mappings = isinstance(node, list) and any(isinstance(item, dict) for item in node)
+    if isinstance(node, list) and has_mappings:
+        for index, item in enumerate(node):
+            yield from leaves(item, (*path, index))
+        return
+    yield path, node
 
 
 def text_at(tree: Tree, key: str) -> str:
@@ -249,20 +270,23 @@ def text_at(tree: Tree, key: str) -> str:
     text = value_at(tree, path_of(key))
     if isinstance(text, str):
         return text
-    paths = [
-        path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty"
-    ]
-    meant = did_you_mean(key, tuple(map(dotted, paths)))
+    # a key that was probably meant: the first that ends as this one, or one of nearly the same letters
+    paths = []
+    for path, value in leaves(tree):
+        if isinstance(value, str) and path[0] != "uncertainty":
+            paths.append(path)
+    hint = did_you_mean(key, tuple(map(dotted, paths)))
     for path in reversed(paths):
         names = ".".join(step for step in path if isinstance(step, str))
         if f".{names}".endswith(f".{key}"):
-            meant = f"; did you mean '{dotted(path)}'?"
-    raise UsageError(f"the file has no value for this key{meant}")
+            hint = f"; did you mean '{dotted(path)}'?"
+    raise UsageError(f"the file has no value for this key{hint}")
 
 
 def texts_at(origin: Origin, keys: Sequence[str]) -> list[str]:
     """Return the texts that a file has for these dotted keys; raises UsageError for a key without a value."""
-    tree, texts = tree_of(origin), []
+    tree = tree_of(origin)
+    texts = []
     for key in keys:
         try:
             texts.append(text_at(tree, key))
@@ -276,20 +300,23 @@ def _short(value: Node) -> str:
     if not isinstance(value, list):
         text = " ".join(str(value).split())
         return text if len(text) <= _LONGEST else f"{text[:_LONGEST]} …"
-    shown = [_short(one) for one in value]
-    if len(shown) > _MOST:
-        return f"[{', '.join(shown[:3])}, …, {shown[-1]}] ({len(shown)} in all)"
-    return f"[{', '.join(shown)}]"
+    texts = [_short(item) for item in value]
+    if len(texts) > _MOST:
+        return f"[{', '.join(texts[:3])}, …, {texts[-1]}] ({len(texts)} in all)"
+    return f"[{', '.join(texts)}]"
 
 
 def case_names(origin: Origin) -> tuple[str, ...]:
     """Return the names of the load cases of a file; raises UsageError where it has none."""
     tree = tree_of(origin)
-    if names := tuple(_cases(tree)):
+    names = tuple(_cases(tree))
+    if names:
         return names
-    none = "'cases' of the file is no list of cases, each with a 'name'; see kurbel check"
-    wrong = none if "cases" in tree else "the file has no 'cases'"
-    raise UsageError(f"--cases: {wrong}")
+    if "cases" not in tree:
+        raise UsageError("--cases: the file has no 'cases'")
+    raise UsageError(
+        "--cases: 'cases' of the file is no list of cases, each with a 'name'; see kurbel check"
+    )
 
 
 # the text of a file with other values under some of its keys; all else, comments too, stays as it is written
@@ -305,35 +332,49 @@ def rewritten(text: str, values: Mapping[str, str]) -> str:
     'crank: 410 mm  # of 1905\\nrod: 2 m\\nflywheel: {inertia: 9 kg m2}\\n'
     """
     for key, value in values.items():
-        start, end, written = _edit(text, path_of(key), value)
-        text = text[:start] + written + text[end:]
+        start, end, replacement = _edit(text, path_of(key), value)
+        text = text[:start] + replacement + text[end:]
     return text
 
 
 def _edit(text: str, path: Path, value: str) -> tuple[int, int, str]:
     """Return start and end of the text to be replaced, and the new text."""
     node = yaml.compose(text, Loader=yaml.SafeLoader)
-    for place, step in enumerate(path):
-        if isinstance(node, yaml.SequenceNode) and isinstance(step, int) and step < len(node.value):
-            node = node.value[step]
+    for depth, step in enumerate(path):
+        # an item of a list
+        items = node.value if isinstance(node, yaml.SequenceNode) else []
+        if isinstance(step, int) and step < len(items):
+            node = items[step]
             continue
+        # a key of a mapping
         if not isinstance(node, yaml.MappingNode):
             raise UsageError(
                 f"--write: '{dotted(path)}' is not written out in the file; write it there first"
             )
-        inner = next((value for key, value in node.value if key.value == str(step)), None)
-        if inner is not None:
-            node = inner
-            continue
-        for missing in reversed(path[place + 1 :]):
-            value = f"{{{missing}: {value}}}"
-        if node.flow_style:
-            start = node.start_mark.index + 1
-            return start, start, f"{step}: {value}, "
-        if not place:
-            return len(text), len(text), "\n" * (not text.endswith("\n")) + f"{step}: {value}\n"
-        start, indent = node.start_mark.index, " " * node.start_mark.column
-        return start, start, f"{step}: {value}\n{indent}"
+        values = [inner for key, inner in node.value if key.value == str(step)]
+        if not values:
+            return _new_key(text, node, path, depth, value)
+        node = values[0]
     if not isinstance(node, yaml.ScalarNode):
         raise UsageError(f"--write: '{dotted(path)}' is no single value in the file")
     return node.start_mark.index, node.end_mark.index, value
+
+
+def _new_key(
+    text: str, mapping: yaml.MappingNode, path: Path, depth: int, value: str
+) -> tuple[int, int, str]:
+    """Return where in the text a key that its mapping does not have is added, and what.
+
+    depth: number of steps of the path that lead to the mapping.
+    """
+    for step in reversed(path[depth + 1 :]):
+        value = f"{{{step}: {value}}}"
+    line = f"{path[depth]}: {value}"
+    start = mapping.start_mark.index
+    if mapping.flow_style:
+        return start + 1, start + 1, f"{line}, "
+    if depth == 0:
+        break_before = "" if text.endswith("\n") else "\n"
+        return len(text), len(text), f"{break_before}{line}\n"
+    indent = " " * mapping.start_mark.column
+    return start, start, f"{line}\n{indent}"

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from kurbel.declared.forms.structures import Maker, ReadMapping, RecordForm, key_places
+from kurbel.declared.forms.making import Maker
+from kurbel.declared.forms.structures import ReadMapping, RecordForm, key_places
 from kurbel.declared.numerals import WRITTEN, familiar
 from kurbel.declared.reading import (
     REFUSED,
@@ -24,7 +25,7 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import located, parse
-from kurbel.machine_file.overrides import named, set_over
+from kurbel.machine_file.overrides import set_over, with_override
 from kurbel.quantities import KEY_VALUES
 from kurbel.quantity import Quantity
 
@@ -52,9 +53,10 @@ def load_cases(origin: Origin, names: Iterable[str]) -> list[Machine]:
         except MachineFileError as error:
             faults += error.faults
     if faults:
-        raise MachineFileError(
-            origin.name, sorted(dict.fromkeys(faults), key=lambda one: (one.line, one.column))
-        )
+        # a fault of the file itself occurs in every case
+        different = dict.fromkeys(faults)
+        in_order = sorted(different, key=lambda fault: (fault.line, fault.column))
+        raise MachineFileError(origin.name, in_order)
     return machines
 
 
@@ -67,24 +69,24 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
     0.8
     """
     # half of a surrogate pair is no text: let the decoder say so
-    return read_machine(
-        source.decode(name, text.encode("utf-8", "surrogatepass")).set_over(overrides)
-    )
+    origin = source.decode(name, text.encode("utf-8", "surrogatepass"))
+    return read_machine(origin.set_over(overrides))
 
 
-def machine_of(given: object) -> Machine:
-    """Return the machine: given itself, as the path of a file, or as a text; raises UsageError for anything else.
+def machine_of(machine: object) -> Machine:
+    """Return a machine that is given itself, as the path of a file, or as a text; raises UsageError for anything else.
 
     A text has several lines, or braces, or a colon followed by a blank; a path has none of these.
     """
-    if isinstance(given, Machine):
-        return given
-    if isinstance(given, str) and re.search(r"[\n{]|:\s", given):
-        return loads(given)
-    if isinstance(given, (str, os.PathLike)):
-        return load(given)
+    if isinstance(machine, Machine):
+        return machine
+    if isinstance(machine, str) and re.search(r"[\n{]|:\s", machine):
+        return loads(machine)
+    if isinstance(machine, (str, os.PathLike)):
+        return load(machine)
     raise UsageError(
-        f"a machine is expected, or the path or text of a machine file, not {text_in_one_line(repr(given))}"
+        "a machine is expected, or the path or text of a machine file, "
+        f"not {text_in_one_line(repr(machine))}"
     )
 
 
@@ -108,36 +110,37 @@ def read_machine(origin: Origin) -> Machine:
 def read_values(origin: Origin, reading: Reading) -> ReadMapping:
     """Return the result of both passes over a file; errors: see `load`; reading: see `reading_of`."""
     tree = parse(origin.text, reading)
-    known = len(reading.faults)  # those of YAML, which have their places
+    faults_of_yaml = list(reading.faults)  # they have their positions
     overrides = set_over(tree, origin)
-    given = REFUSED
+    mapping = REFUSED
     try:
         if isinstance(tree, dict):
-            given = ROOT.read(reading, {"name": origin.stem, **_without_zeros(tree, reading)}, ())
-            Maker(reading).made(given)
+            keys = {"name": origin.stem, **_without_zeros(tree, reading)}
+            mapping = ROOT.read(reading, keys, ())
+            Maker(reading).made(mapping)
         elif isinstance(tree, Plain) and not tree:
             reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
         elif tree is not REFUSED:
-            reading.fault(
-                (),
-                f"expected lines such as 'crank: 400 mm', got {node_kind(tree)}{glued_hint(tree)}",
-            )
+            node = f"{node_kind(tree)}{glued_hint(tree)}"
+            reading.fault((), f"expected lines such as 'crank: 400 mm', got {node}")
     except StopReading:
         pass
-    if reading.faults:
-        found = [named(fault, overrides) for fault in reading.faults[known:]]
-        in_file = located(origin.text, [one for one in found if not one.override])
-        raise origin.error(
-            *reading.faults[:known], *(one for one in found if one.override), *in_file
-        )
-    assert isinstance(given, ReadMapping)
-    return given
+    if not reading.faults:
+        assert isinstance(mapping, ReadMapping)
+        return mapping
+    # faults of overrides have no position in the file
+    of_overrides: list[Fault] = []
+    of_file: list[Fault] = []
+    for fault in reading.faults[len(faults_of_yaml) :]:
+        fault = with_override(fault, overrides)
+        (of_overrides if fault.override else of_file).append(fault)
+    raise origin.error(*faults_of_yaml, *of_overrides, *located(origin.text, of_file))
 
 
 # pressure units that name their zero, such as psia and barg, must agree with the reference of the value; in the tree
 # they are replaced by psi and bar, so that no other code needs to handle them
 
-_COUNTED = {
+_REFERENCES = {
     "ambient": "absolute",
     "vapour_pressure": "absolute",
     **dict.fromkeys(("offset", "mean_pressure", "drawn"), ""),
@@ -146,35 +149,46 @@ _COUNTED = {
 _ZEROED = re.compile(rf"((?:{WRITTEN})?\s*)({'|'.join(ZEROED_UNITS)})")
 
 
-def _without_zeros(tree: Node, reading: Reading, path: Path = (), counted: str = "") -> Any:
-    """Return a tree without such units; one that does not agree with `counted`, gauge or absolute, is a fault.
+def _without_zeros(tree: Node, reading: Reading, path: Path = (), reference: str = "") -> Any:
+    """Return a tree without such units; one that does not agree with its reference, gauge or absolute, is a fault.
 
     Pressures of an indicator are gauge or absolute by its `pressures`, the ambient is absolute, others are neither.
     """
     if isinstance(tree, dict):
         if path[-1:] == ("indicator",):
-            counted = "absolute" if tree.get("pressures") == "absolute" else "gauge"
-        zeros = {key: _COUNTED.get(key, counted) for key in tree}
-        return {
-            key: _without_zeros(one, reading, (*path, key), zeros[key]) for key, one in tree.items()
-        }
-    if isinstance(tree, list) and not (
-        tree and isinstance(tree[0], list)
-    ):  # points are of bare numbers
+            reference = "absolute" if tree.get("pressures") == "absolute" else "gauge"
+        mapping = {}
+        for key, node in tree.items():
+            reference_of_key = _REFERENCES.get(key, reference)
+            mapping[key] = _without_zeros(node, reading, (*path, key), reference_of_key)
+        return mapping
+    if isinstance(tree, list):
+        has_points = bool(tree) and isinstance(tree[0], list)
+        if has_points:  # of bare numbers
+            return tree
         return [
-            _without_zeros(one, reading, (*path, index), counted) for index, one in enumerate(tree)
+            _without_zeros(node, reading, (*path, index), reference)
+            for index, node in enumerate(tree)
         ]
-    found = _ZEROED.fullmatch(familiar(tree).strip()) if isinstance(tree, str) else None
-    if not found or (path[-1] != "unit" and not found[1].strip()):
-        return tree
-    zero, plain = ZEROED_UNITS[found[2]]
-    if zero == counted:
-        return type(tree)(found[1] + plain)
-    if not counted:
-        wrong = f"but this pressure has no zero; write the unit {plain}"
+    return _without_zero(tree, reading, path, reference) if isinstance(tree, str) else tree
+
+
+def _without_zero(text: str, reading: Reading, path: Path, reference: str) -> Node:
+    """Return a text with psi in place of psia or psig, if it is a pressure of this reference."""
+    pressure = _ZEROED.fullmatch(familiar(text).strip())
+    if pressure is None:
+        return text
+    number, unit = pressure.groups()
+    if path[-1] != "unit" and not number.strip():
+        return text
+    zero, plain = ZEROED_UNITS[unit]
+    if zero == reference:
+        return type(text)(number + plain)
+    if not reference:
+        advice = f"but this pressure has no zero; write the unit {plain}"
     elif path[-1] == "ambient":
-        wrong = f"but the ambient is absolute; write the absolute pressure in {plain}"
+        advice = f"but the ambient is absolute; write the absolute pressure in {plain}"
     else:
-        other = f"write 'pressures: {zero}', or the {counted} pressure in {plain}"
-        wrong = f"but 'pressures: {counted}' holds here; {other}"
-    return reading.fault(path, f"'{found[2]}' is {zero}, {wrong}")
+        other = f"write 'pressures: {zero}', or the {reference} pressure in {plain}"
+        advice = f"but 'pressures: {reference}' holds here; {other}"
+    return reading.fault(path, f"'{unit}' is {zero}, {advice}")

@@ -55,36 +55,46 @@ def _of(form: Form, definitions: Schema) -> Schema:
         return _reference(name)
     if isinstance(form, Listing):
         item = _of(form.item, definitions)
-        if form.called and isinstance(
-            form.item, RecordForm
-        ):  # one that is like another need not say everything
+        # an item that is like another need not have all keys
+        if form.called and isinstance(form.item, RecordForm):
             short = _mapping(definitions[form.item.record.__name__]["properties"])
             item = {"if": {"required": ["like"]}, "then": short, "else": item}
         return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_ITEMS}
     if isinstance(form, Nested):
         return _of(form.outer(), definitions)
     if isinstance(form, OneOf):
-        return {"anyOf": [_of(one, definitions) for one in form.forms]}
+        return {"anyOf": [_of(option, definitions) for option in form.forms]}
     if isinstance(form, Keyed):
-        each = []
-        for name, case in form.cases.items():
-            own = case.keys if isinstance(case, RecordForm) else {}
-            beside = {key: _of(own[key].form, definitions) for key in form.beside if key in own}
-            each.append(_mapping({name: _of(case, definitions), **beside}) | {"required": [name]})
-        return {"anyOf": [*each, _of(form.otherwise, definitions)]}
+        return _of_keyed(form, definitions)
     if isinstance(form, FigureForm):
-        name = f"figure_{form.size.kind}"
-        two = {"type": "array", "items": _of(form.size, definitions), "minItems": 2, "maxItems": 2}
-        definitions[name] = {
-            "anyOf": [
-                {"type": "string", "pattern": r"^[^±]*[0-9][^±]*(±|\+\s*/?\s*-)\s*[0-9.][^±]*$"},
-                two,
-            ],
-            "errorMessage": f"write {form.expected}",
-            "examples": [form.example, form.absolute],
-        }
-        return _reference(name)
+        return _of_figure(form, definitions)
     return dict(form.schema)
+
+
+def _of_keyed(form: Keyed, definitions: Schema) -> Schema:
+    """Return the schema of a mapping with one key that decides its form, or without one."""
+    cases = []
+    for name, case in form.cases.items():
+        properties = {name: _of(case, definitions)}
+        keys = case.keys if isinstance(case, RecordForm) else {}
+        for beside in form.beside:
+            if beside in keys:
+                properties[beside] = _of(keys[beside].form, definitions)
+        cases.append(_mapping(properties) | {"required": [name]})
+    return {"anyOf": [*cases, _of(form.otherwise, definitions)]}
+
+
+def _of_figure(form: FigureForm, definitions: Schema) -> Schema:
+    """Return the schema of a figure with its tolerance, or of two bounds."""
+    name = f"figure_{form.size.kind}"
+    tolerated = {"type": "string", "pattern": r"^[^±]*[0-9][^±]*(±|\+\s*/?\s*-)\s*[0-9.][^±]*$"}
+    bounds = {"type": "array", "items": _of(form.size, definitions), "minItems": 2, "maxItems": 2}
+    definitions[name] = {
+        "anyOf": [tolerated, bounds],
+        "errorMessage": f"write {form.expected}",
+        "examples": [form.example, form.absolute],
+    }
+    return _reference(name)
 
 
 def _mapping(properties: Schema) -> Schema:
@@ -99,9 +109,10 @@ def _reference(name: str) -> Schema:
 def _of_number(form: NumberForm, definitions: Schema) -> Schema:
     """Return the schema of a number with its unit, of a bare one within its bounds, or of a whole one."""
     if form.whole:
-        return {"type": "integer", "minimum": form.least} | (
-            {} if form.most is None else {"maximum": form.most}
-        )
+        integer: Schema = {"type": "integer", "minimum": form.least}
+        if form.most is not None:
+            integer["maximum"] = form.most
+        return integer
     if form.kind == "ratio":
         largest = KINDS["ratio"].largest
         bounds = {
@@ -110,10 +121,14 @@ def _of_number(form: NumberForm, definitions: Schema) -> Schema:
             "exclusiveMaximum": form.below,
             "maximum": largest if form.most is None else form.most,
         }
-        given = {name: bound for name, bound in bounds.items() if bound is not None}
-        number: Schema = {"type": ["number", "string"], **given, "pattern": f"^\\s*{RATIO}\\s*$"}
+        number: Schema = {"type": ["number", "string"]}
+        for name, bound in bounds.items():
+            if bound is not None:
+                number[name] = bound
+        number["pattern"] = f"^\\s*{RATIO}\\s*$"
     else:
-        name, units = f"quantity_{form.kind}", ", ".join(unit_names(form.kind))
+        name = f"quantity_{form.kind}"
+        units = ", ".join(unit_names(form.kind))
         definitions[name] = {
             "type": "string",
             "pattern": f"^\\s*{WRITTEN}\\s*{_unit_pattern(form.kind)}\\s*$",
@@ -124,7 +139,10 @@ def _of_number(form: NumberForm, definitions: Schema) -> Schema:
             "examples": [form.example],
         }
         number = _reference(name)
-    others: list[object] = [*form.words] + [0] * form.zero
+    # what is allowed in addition to the bounds
+    others: list[object] = [*form.words]
+    if form.zero:
+        others.append(0)
     return {"anyOf": [number, {"enum": others}]} if others else number
 
 
@@ -132,35 +150,42 @@ def _unit_pattern(kind: str) -> str:
     """Return a pattern of the units of a kind in every spelling that is read: `kgf m2` is also `kgf·m²`, `kgf*m^2`."""
     patterns = []
     for unit in unit_names(kind):
-        letters = (
-            re.escape(re.sub(r"(?<=[a-z])2", "²", unit))
-            .replace("\\ ", "[ ·*]+")
-            .replace("/", "\\s*/\\s*")
-        )
-        letters = re.sub("(?<=m|n)(?=Hg|H2O)", " ?", re.sub("^u(?=m)", "[uµμ]", letters))
-        patterns.append(letters.replace("²", "(?:\\^?2|²)"))
+        pattern = re.escape(re.sub(r"(?<=[a-z])2", "²", unit))
+        pattern = pattern.replace("\\ ", "[ ·*]+")
+        pattern = pattern.replace("/", "\\s*/\\s*")
+        pattern = re.sub("^u(?=m)", "[uµμ]", pattern)
+        pattern = re.sub("(?<=m|n)(?=Hg|H2O)", " ?", pattern)
+        pattern = pattern.replace("²", "(?:\\^?2|²)")
+        patterns.append(pattern)
     return f"(?:{'|'.join(patterns)})"
 
 
-def _of_figures(form: Figures, known: Mapping[str, Quantity], definitions: Schema) -> Schema:
+def _of_figures(form: Figures, quantities: Mapping[str, Quantity], definitions: Schema) -> Schema:
     """Return the schema of a mapping from these key values, by id."""
     # a symbol of several, or of one and the id of another, names none
-    named = Counter(
-        name for one in known.values() for name in {one.id, one.symbol, one.ascii_symbol}
-    )
+    uses: Counter[str] = Counter()
+    for quantity in quantities.values():
+        uses.update({quantity.id, quantity.symbol, quantity.ascii_symbol})
     properties: Schema = {}
-    names: dict[str, list[str]] = {}  # of those of one schema, which have one pattern below a scope
+    # schema as text -> patterns of the names that have it, which have one pattern below a scope
+    name_patterns: dict[str, list[str]] = {}
     schemas: dict[str, Schema] = {}
-    for id, quantity in known.items():
+    for id, quantity in quantities.items():
+        if quantity.listed:
+            continue
         for name in (id, quantity.symbol, quantity.ascii_symbol):
-            if not quantity.listed and (name == id or named[name] == 1) and name not in properties:
-                schema = _of(form.figure_of(quantity), definitions)
-                properties[name] = {**schema, "description": quantity.text}
-                schemas[repr(schema)] = schema
-                names.setdefault(repr(schema), []).append(
-                    re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name)
-                )
-    patterns = {f"^.+\\.({'|'.join(names[text])})$": schema for text, schema in schemas.items()}
+            is_unique = name == id or uses[name] == 1
+            if not is_unique or name in properties:
+                continue
+            schema = _of(form.figure_of(quantity), definitions)
+            properties[name] = {**schema, "description": quantity.text}
+            text = repr(schema)
+            schemas[text] = schema
+            escaped = re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name)
+            name_patterns.setdefault(text, []).append(escaped)
+    patterns: Schema = {}
+    for text, schema in schemas.items():
+        patterns[f"^.+\\.({'|'.join(name_patterns[text])})$"] = schema
     return {**_mapping(properties), "patternProperties": patterns}
 
 
@@ -169,49 +194,70 @@ def _of_mapping(form: RecordForm, definitions: Schema) -> Schema:
     properties: Schema = {}
     rules: list[Schema] = []
     describe(form, properties, rules, definitions)
-    return _mapping(properties) | _demands(form) | ({"allOf": rules} if rules else {})
+    schema = _mapping(properties) | _demands(form)
+    if rules:
+        schema["allOf"] = rules
+    return schema
 
 
 def describe(
     record: RecordForm, properties: Schema, rules: list[Schema], definitions: Schema
 ) -> None:
     """Add all keys to the schema of a mapping, those of inline records after its own."""
-    for name, key in sorted(record.keys.items(), key=lambda item: isinstance(item[1].form, Inline)):
+    inline: list[Inline] = []
+    for name, key in record.keys.items():
         form = key.form
         if isinstance(form, Inline):
-            before = set(properties)
-            describe(form, properties, rules, definitions)
-            added = [[inner] for inner in properties if inner not in before]
-            if demands := _demands(form):
-                rules.append(
-                    {"if": {"anyOf": [{"required": group} for group in added]}, "then": demands}
-                )
-            if form.unless:
-                rules.append({"if": {"required": [form.unless]}, "then": _none_of(added)})
+            inline.append(form)
             continue
-        shared = name in properties  # with another mechanism, where it may need nothing
+        is_shared = name in properties  # with another mechanism, where it may need nothing
         properties.setdefault(name, {**_of(form, definitions), "description": key.description})
         if key.instead:
             rules.append(_none_of([[name, key.instead]]))
-        if key.needs and not shared:
+        if key.needs and not is_shared:
             rules.append({"dependencies": {name: [key.needs]}})
-        if not isinstance(form, Variant):
-            continue
-        for word, case in form.cases.items():
-            describe(case, properties, rules, definitions)
-            chosen: Schema = {"properties": {name: {"const": word}}}
-            if word != form.default:
-                chosen["required"] = [name]
-            others = dict.fromkeys(inner for one in form.cases.values() for inner in one.keys)
-            foreign = [[inner] for inner in others if inner not in case.keys]
-            rules.append(
-                {"if": chosen, "then": (_none_of(foreign) if foreign else {}) | _demands(case)}
-            )
+        if isinstance(form, Variant):
+            _describe_variant(name, form, properties, rules, definitions)
+    for form in inline:
+        _describe_inline(form, properties, rules, definitions)
+
+
+def _describe_inline(
+    form: Inline, properties: Schema, rules: list[Schema], definitions: Schema
+) -> None:
+    """Add the keys of an inline record, which are required if one of them is present, or forbidden by its list."""
+    before = set(properties)
+    describe(form, properties, rules, definitions)
+    added = [[name] for name in properties if name not in before]
+    demands = _demands(form)
+    if demands:
+        is_present = {"anyOf": [{"required": group} for group in added]}
+        rules.append({"if": is_present, "then": demands})
+    if form.unless:
+        rules.append({"if": {"required": [form.unless]}, "then": _none_of(added)})
+
+
+def _describe_variant(
+    name: str, variant: Variant, properties: Schema, rules: list[Schema], definitions: Schema
+) -> None:
+    """Add the keys of all cases of a variant; each word forbids the keys of other cases."""
+    all_keys: dict[str, None] = {}
+    for case in variant.cases.values():
+        all_keys |= dict.fromkeys(case.keys)
+    for word, case in variant.cases.items():
+        describe(case, properties, rules, definitions)
+        is_chosen: Schema = {"properties": {name: {"const": word}}}
+        if word != variant.default:
+            is_chosen["required"] = [name]
+        foreign = [[key] for key in all_keys if key not in case.keys]
+        forbidden = _none_of(foreign) if foreign else {}
+        rules.append({"if": is_chosen, "then": forbidden | _demands(case)})
 
 
 def _demands(form: RecordForm) -> Schema:
     """Return the schema of the keys that must be given."""
-    return {"required": needed} if (needed := required(form.keys)) else {}
+    names = required(form.keys)
+    return {"required": names} if names else {}
 
 
 def _none_of(groups: list[list[str]]) -> Schema:

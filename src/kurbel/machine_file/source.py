@@ -30,27 +30,28 @@ def read(path: str | os.PathLike[str]) -> Origin:
         with open(name, "rb") as file:
             return decode(name, file.read(SIZE_LIMIT + 1), os.path.dirname(name))
     except FileNotFoundError:
-        writes = f"'kurbel example {name} > {name}.yaml' writes the shipped machine of this name"
-        named = next(
-            (
-                f"{name}{end}"
-                for end in (".yaml", ".yml")
-                if name and os.path.isfile(f"{name}{end}")
-            ),
-            "",
-        )
-        other = (
-            f"did you mean '{named}'?" if named else "'kurbel example' lists machines to start from"
-        )
-        hint = writes if name in shipped() else other
-        what = f"{name or 'the empty name'}: there is no such file; {hint}"
+        hint = _hint_without_file(name)
+        message = f"{name or 'the empty name'}: there is no such file; {hint}"
     except IsADirectoryError:
-        what = f"{name} is a folder; name the machine file in it"
+        message = f"{name} is a folder; name the machine file in it"
     except PermissionError:
-        what = f"{name} may not be read; check its permissions"
-    except (OSError, ValueError) as error:  # ValueError: a NUL character in the name
-        what = f"{name} cannot be read: {error.strerror if isinstance(error, OSError) else error}"
-    raise UnreadableFileError(what)
+        message = f"{name} may not be read; check its permissions"
+    except OSError as error:
+        message = f"{name} cannot be read: {error.strerror}"
+    except ValueError as error:  # a NUL character in the name
+        message = f"{name} cannot be read: {error}"
+    raise UnreadableFileError(message)
+
+
+def _hint_without_file(name: str) -> str:
+    """Return what to do where there is no file of this name."""
+    if name in shipped():
+        return f"'kurbel example {name} > {name}.yaml' writes the shipped machine of this name"
+    if name:
+        for ending in (".yaml", ".yml"):
+            if os.path.isfile(f"{name}{ending}"):
+                return f"did you mean '{name}{ending}'?"
+    return "'kurbel example' lists machines to start from"
 
 
 def decode(name: str, content: bytes, folder: str = "") -> Origin:
@@ -69,13 +70,13 @@ def decode(name: str, content: bytes, folder: str = "") -> Origin:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         before = content[: error.start].decode("utf-8-sig")
+        after = content[error.start :].decode("latin-1")
         message = f"byte 0x{content[error.start]:02X} is no UTF-8; save the file as UTF-8"
-        raise _refused(
-            name, before + content[error.start :].decode("latin-1"), len(before), message
-        ) from None
-    if found := _UNPRINTABLE.search(text):
-        message = f"the character U+{ord(found.group()):04X} cannot be printed; remove it"
-        raise _refused(name, text, found.start(), message)
+        raise _refused(name, before + after, len(before), message) from None
+    unprintable = _UNPRINTABLE.search(text)
+    if unprintable:
+        message = f"the character U+{ord(unprintable.group()):04X} cannot be printed; remove it"
+        raise _refused(name, text, unprintable.start(), message)
     return Origin(name, text.translate(_SPACE), folder, content)
 
 

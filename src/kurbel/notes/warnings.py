@@ -16,6 +16,7 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.cylinder import pin_lag
 from kurbel.machine.indicator import Card, CardLine
 from kurbel.notes.plausible import cylinder_doubts, machine_doubts
 from kurbel.solver.case import Case
@@ -124,8 +125,8 @@ def pin_warnings(machine: Machine) -> Iterator[str]:
     ]
     for (z, one), (next_z, other) in pairwise(sorted(placed, key=lambda pair: pair[0])):
         # the throws at φ = 0
-        throws = other.bank_angle - other.crank_position, one.bank_angle - one.crank_position
-        apart = abs(math.remainder(throws[0] - throws[1], 360.0))
+        first = machine.cylinders[0]
+        apart = abs(math.remainder(pin_lag(other, first) - pin_lag(one, first), 360.0))
         if next_z - z <= _SAME_PLACE and apart > _SAME_ANGLE:
             yield (
                 f"{one.name} and {other.name} are at one place along the shaft, but their throws are "

@@ -15,12 +15,12 @@ from kurbel.machine import Machine
 from kurbel.machine.firing import firings
 from kurbel.machine.indicator import Chamber
 from kurbel.machine.several import intervals
-from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.pictures.picture import Fact, Facts, FactValue, Grid, Notice, SectionItem
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
-from kurbel.tables.frame import PlaceRow, Places, Subject, before_jumps
+from kurbel.tables.frame import Subject, before_jumps
+from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import BEFORE, grouped, together
 
 Thing = TypeVar("Thing")
@@ -160,7 +160,7 @@ def subtitle_of(machine: Machine) -> str:
     strokes = [
         mechanism.stroke for mechanism in mechanisms if mechanism.slides and not mechanism.turns
     ]
-    rods = [mechanism.rod for mechanism in mechanisms if isinstance(mechanism, SliderCrank)]
+    rods = [mechanism.rod_length for mechanism in mechanisms]  # infinite where there is none
     bores = []
     for cylinder in machine.cylinders:
         bores += [piston.bore for piston in cylinder.pistons]

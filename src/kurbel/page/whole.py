@@ -1,9 +1,9 @@
 """The report of `kurbel report`: all that a machine has, section by section; or two machines side by side."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
-from itertools import zip_longest
+from itertools import chain, zip_longest
 from operator import itemgetter
 
 import numpy as np
@@ -36,14 +36,13 @@ from kurbel.pictures.picture import (
 )
 from kurbel.pictures.picture_source import PictureOptions
 from kurbel.pictures.pictures import PICTURES, PictureKind, pictures_if_any
-from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity
-from kurbel.report.commands import REPORTS, subjects_of
-from kurbel.report.keys import every_place, meaning
+from kurbel.report.commands import REPORTS, Command, subjects_of
+from kurbel.report.keys import meaning, places_of
 from kurbel.solver.case import Case
 from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
 from kurbel.tables.frame import Frame, Subject, provenance
-from kurbel.tables.tables import Report, for_people, grouped, stepped, together
+from kurbel.tables.tables import Part, Report, for_people, grouped, stepped, together
 
 KeyTexts = Sequence[tuple[str, str]]
 """The keys of a machine file with their values, as they were read."""
@@ -54,18 +53,18 @@ _NONE = "–"
 
 def _pictures(case: Case, command: str, system: str) -> list[Picture | str]:
     """Return the pictures of the section of a command; without one that of the first page."""
-    return [
-        one for kind in PICTURES if kind.command == command for one in _drawn(case, kind, system)
-    ]
+    pictures = list[Picture | str]()
+    for kind in PICTURES:
+        if kind.command == command:
+            pictures += _drawn(case, kind, system)
+    return pictures
 
 
 def _drawn(case: Case, kind: PictureKind, system: str, name: str = "") -> list[Picture | str]:
     """Return one picture of a machine under this name, as often as it has it; without a solution a sentence."""
     try:
-        return [
-            one._replace(machine=name)
-            for one in pictures_if_any(case, kind, PictureOptions(system))
-        ]
+        pictures = pictures_if_any(case, kind, PictureOptions(system))
+        return [picture._replace(machine=name) for picture in pictures]
     except NoSolutionError as error:
         return [f"{kind.title}: {error}"]
 
@@ -87,84 +86,92 @@ def whole_report(
     given: the keys of its file; step: of the tables in degrees; cases: its load cases.
     """
     stepped(step, 360.0)  # an invalid step is rejected at once
-    machine, sections, tables = case.machine, list[Section](), list[SectionItem]()
+    machine = case.machine
+    sections, tables = list[Section](), list[SectionItem]()
     left_out: dict[tuple[str, str], list[str]] = {}
     warnings = dict.fromkeys(of_machine(case))
     for command in REPORTS:
         progress(command.title.lower())
         items = list[SectionItem](firing_order(machine) if command.word == "flywheel" else ())
         try:
-            angles = stepped(step, command.functions.end(case), max(len(case.cylinders), 1))
-            report = for_people(
-                command.functions.report(case, Frame(command.word, angles, None, system))
-            )
+            report = _report_of(command, case, system, step)
         except NoSolutionError as error:
             items.append(f"No solution: {error}")
         except UsageError as error:
-            left_out[command.title, str(error).removeprefix(f"{machine.name}: ")] = []
+            why = str(error).removeprefix(f"{machine.name}: ")
+            left_out[command.title, why] = []
             continue
         else:
-            items.append(
-                ReportAnswers(_without_motion(report) if command.word == "forces" else report)
-            )
-            tables += (
-                [OverAngle(report, command.title)]
-                if any(part.columns for part in report.all_parts)
-                else []
-            )
-            for reason in (reason for part in report.all_parts for reason in part.left_out):
-                left_out.setdefault(reason, []).append(command.title.lower())
+            is_forces = command.word == "forces"
+            items.append(ReportAnswers(_without_motion(report, case) if is_forces else report))
+            if any(part.columns for part in report.all_parts):
+                tables.append(OverAngle(report, command.title))
+            for part in report.all_parts:
+                for reason in part.left_out:
+                    left_out.setdefault(reason, []).append(command.title.lower())
             # the warnings of a cylinder lack its name, and are among those of the machine
-            warnings |= dict.fromkeys(report.whole.warnings if report.whole else ())
+            if report.whole:
+                warnings |= dict.fromkeys(report.whole.warnings)
         if cases and command.in_cases:
             with suppress(KurbelError):
                 items.append(ReportAnswers(cases_report(machine, cases, command.word, system)))
-        sections.append(
-            Section(command.word, command.title, (*_pictures(case, command.word, system), *items))
-        )
+        pictures = _pictures(case, command.word, system)
+        sections.append(Section(command.word, command.title, (*pictures, *items)))
 
-    rows = tuple(
-        (what, why, ", ".join(dict.fromkeys(where))) for (what, why), where in left_out.items()
-    )
     sections += [
         Section("energy", "Energy balance", tuple(_energy(case, system))),
         Section("tables", "Over the crank angle", tuple(tables)),
-        Section("left-out", "Left out", (Grid("", ("Part", "Why", "Of"), rows),) if rows else ()),
+        Section("left-out", "Left out", tuple(_left_out(left_out))),
         Section("input", "Input as understood", tuple(_input(case, given))),
     ]
-    first = (*_pictures(case, "", system)[:1], *first_page(case, cases, system, warnings))
-    sections = [section for section in sections if section.items]
     return Document(
-        machine.name, (subtitle_of(machine),), first, tuple(sections), (provenance(machine),)
+        machine.name,
+        (subtitle_of(machine),),
+        (*_pictures(case, "", system)[:1], *first_page(case, cases, system, warnings)),
+        tuple(section for section in sections if section.items),
+        (provenance(machine),),
     )
 
 
-def _without_motion(report: Report) -> Report:
+def _report_of(command: Command, case: Case, system: str, step: float) -> Report:
+    """Return the report of a command for people, with rows at even steps; raises as it does."""
+    functions = command.functions
+    angles = stepped(step, functions.end(case), max(len(case.cylinders), 1))
+    return for_people(functions.report(case, Frame(command.word, angles, None, system)))
+
+
+def _left_out(reasons: Mapping[tuple[str, str], Sequence[str]]) -> Iterator[Grid]:
+    """Yield the table of what was left out and why, if anything was; reasons: with the commands that leave it out."""
+    rows = [(what, why, ", ".join(dict.fromkeys(words))) for (what, why), words in reasons.items()]
+    if rows:
+        yield Grid("", ("Part", "Why", "Of"), tuple(rows))
+
+
+def _without_motion(report: Report, case: Case) -> Report:
     """Return the report on forces without the key values that the section on motion has."""
-    own = {
-        key_value.id
-        for key_value in every_quantity().all_key_values
-        if key_value.commands[:1] == ("forces",)
-    }
-    return report.changed(
-        lambda part: part._replace(
-            key_values=tuple(key_value for key_value in part.key_values if key_value.id in own)
-        )
-    )
+    ids = set()
+    for cylinder in case.cylinders:
+        for quantity in cylinder.lists.all_key_values:
+            if quantity.commands[:1] == ("forces",):
+                ids.add(quantity.id)
+
+    def of_forces(part: Part) -> Part:
+        key_values = (key_value for key_value in part.key_values if key_value.id in ids)
+        return part._replace(key_values=tuple(key_values))
+
+    return report.changed(of_forces)
 
 
 def _input(case: Case, given: KeyTexts) -> Iterator[Grid]:
     """Yield the keys of the file with their meanings, and the results of a check of the machine."""
-    places = every_place()
     if given:
+        places = places_of(given)
         rows = tuple((path, value, meaning(path, places)) for path, value in given)
         yield Grid("Given", ("Key", "Value", "Meaning"), rows)
     for part in checked(case).shown_once:
-        listed = tuple(
-            (entry.what, entry.text) for entry in part.entries if entry.severity != "warning"
-        )
-        if listed and part.title not in ("Limits", "Expected"):
-            yield Grid(part.title, ("", ""), listed)
+        entries = [entry for entry in part.entries if entry.severity != "warning"]
+        if entries and part.title not in ("Limits", "Expected"):
+            yield Grid(part.title, ("", ""), tuple((entry.what, entry.text) for entry in entries))
 
 
 def _energy(case: Case, system: str) -> Iterator[Grid]:
@@ -172,35 +179,46 @@ def _energy(case: Case, system: str) -> Iterator[Grid]:
 
     Identical cylinders are listed once, those without a solution are omitted.
     """
-    found = [(forces.drive.name, _energy_rows(forces, system)) for forces in case.cylinders]
-    for equal in grouped((one for one in found if one[1]), itemgetter(1)):
-        name = together([name for name, _ in equal])
-        yield Grid(name, ("Per cycle", "Energy", "Unit"), equal[0][1], (1,))
+    balances = [(forces.drive.name, _energy_rows(forces, system)) for forces in case.cylinders]
+    with_rows = [(name, rows) for name, rows in balances if rows]
+    for group in grouped(with_rows, itemgetter(1)):
+        _, rows = group[0]
+        yield Grid(
+            together([name for name, _ in group]), ("Per cycle", "Energy", "Unit"), rows, (1,)
+        )
 
 
 def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[FactValue, ...], ...]:
+    """Return the rows of an energy balance: each work, what is left of them, and the residual."""
     try:
-        left, residual, friction = forces.work_left, forces.energy_residual, forces.friction_works
-        terms = [
-            ("Indicated work of the driving pistons", forces.work_driving),
-            ("Indicated work of the driven pistons", forces.work_driven),
-            *(
-                (f"Friction {place}", -(friction.get(name) or 0.0))
-                for name, (_, place) in {**SLIDING, **RUBBING}.items()
-            ),
-            ("Friction given as a force", -(friction.get("constant") or 0.0)),
-            ("What the output works against", forces.resistance_work),
-        ]
+        left, residual = forces.work_left, forces.energy_residual
+        terms = list(_energy_terms(forces))
     except KurbelError:
         return ()
     if left is None:
         return ()
-    known = [(text, value) for text, value in terms if value]
-    unit = shown_unit("energy", system, max((abs(value) for _, value in known), default=abs(left)))
-    known.append(("Reaches the shaft, 2π R W per turn", left))
-    open_ = "below 1e-14" if residual is not None and abs(residual) < 1e-14 else f"{residual:.2g}"
-    rows = [(text, float(convert(value, "energy", unit)), unit) for text, value in known]
-    return (*rows, ("Left open by an independent quadrature, over the turnover", open_, ""))
+    terms = [(text, work) for text, work in terms if work]
+    largest = max((abs(work) for _, work in terms), default=abs(left))
+    unit = shown_unit("energy", system, largest)
+    terms.append(("Reaches the shaft, 2π R W per turn", left))
+    rows = [(text, float(convert(work, "energy", unit)), unit) for text, work in terms]
+    is_rounding = residual is not None and abs(residual) < 1e-14
+    shown_residual = "below 1e-14" if is_rounding else f"{residual:.2g}"
+    return (
+        *rows,
+        ("Left open by an independent quadrature, over the turnover", shown_residual, ""),
+    )
+
+
+def _energy_terms(forces: CylinderForces) -> Iterator[tuple[str, float]]:
+    """Yield what a cylinder takes in and gives off in a cycle, in J."""
+    friction = forces.friction_works
+    yield "Indicated work of the driving pistons", forces.work_driving
+    yield "Indicated work of the driven pistons", forces.work_driven
+    for name, (_, joint) in {**SLIDING, **RUBBING}.items():
+        yield f"Friction {joint}", -(friction.get(name) or 0.0)
+    yield "Friction given as a force", -(friction.get("constant") or 0.0)
+    yield "What the output works against", forces.resistance_work
 
 
 # two machines side by side
@@ -212,63 +230,79 @@ def side_by_side(
 ) -> Document:
     """Return the report on two machines: input that differs, key values with their differences, pictures in pairs."""
     names = [case.machine.name for case in cases]
-    names = names if names[0] != names[1] else [f"{names[0]} (A)", f"{names[1]} (B)"]
-    files = [case.machine.origin.name for case in cases if case.machine.origin]
-    items: list[SectionItem] = []
-    if len(files) == len(names):
-        items.append(
-            "; ".join(f"{name} is that of {file}" for name, file in zip(names, files)) + "."
-        )
-    one, other = map(dict, given)
-    keys = dict.fromkeys((*one, *other))
-    rows = tuple(
-        (key, one.get(key, _NONE), other.get(key, _NONE))
-        for key in keys
-        if one.get(key) != other.get(key)
-    )
-    items.append(
-        Grid("Keys", ("Key", *names), rows) if rows else "Nothing: both files give the same."
-    )
-    sections = [Section("input", "What was given differently", tuple(items))]
-
+    if names[0] == names[1]:
+        names = [f"{names[0]} (A)", f"{names[1]} (B)"]
+    input_items = tuple(_differing_input(cases, given, names))
+    sections = [Section("input", "What was given differently", input_items)]
     for command in REPORTS:
         progress(command.title.lower())
-        items = [
-            *_pairs(cases, command.word, names, system),
-            *_key_values(cases, names, command.word, system),
-        ]
-        sections += [Section(command.word, command.title, tuple(items))] if items else []
-    subtitles = tuple(f"{name}: {subtitle_of(case.machine)}" for name, case in zip(names, cases))
-    sources = tuple(provenance(case.machine) for case in cases)
-    first = tuple(_both_first(cases, names, system))
-    return Document(" and ".join(names), subtitles, first, tuple(sections), sources)
+        items: list[SectionItem] = list(_pairs(cases, command.word, names, system))
+        items += _key_values(cases, names, command.word, system)
+        if items:
+            sections.append(Section(command.word, command.title, tuple(items)))
+    return Document(
+        " and ".join(names),
+        tuple(f"{name}: {subtitle_of(case.machine)}" for name, case in zip(names, cases)),
+        tuple(_both_first(cases, names, system)),
+        tuple(sections),
+        tuple(provenance(case.machine) for case in cases),
+    )
+
+
+def _differing_input(
+    cases: Sequence[Case], given: Sequence[KeyTexts], names: Sequence[str]
+) -> Iterator[SectionItem]:
+    """Yield which machine is that of which file, and the keys with other values in both."""
+    files = [case.machine.origin.name for case in cases if case.machine.origin]
+    if len(files) == len(names):
+        texts = [f"{name} is that of {file}" for name, file in zip(names, files)]
+        yield "; ".join(texts) + "."
+    left, right = map(dict, given)
+    rows = []
+    for key in dict.fromkeys((*left, *right)):
+        if left.get(key) != right.get(key):
+            rows.append((key, left.get(key, _NONE), right.get(key, _NONE)))
+    if rows:
+        yield Grid("Keys", ("Key", *names), tuple(rows))
+    else:
+        yield "Nothing: both files give the same."
 
 
 def _pairs(
     cases: Sequence[Case], command: str, names: Sequence[str], system: str
 ) -> Iterator[Pair]:
     """Yield the pictures of a command of both machines, which have their names in this report."""
-    for kind in (picture for picture in PICTURES if picture.command == command):
-        for pair in zip_longest(
-            *(_drawn(case, kind, system, name) for case, name in zip(cases, names))
-        ):
-            left, right = (one if isinstance(one, Picture) else None for one in pair)
-            if left or right:
-                yield Pair(left, right)
+    for kind in PICTURES:
+        if kind.command != command:
+            continue
+        drawn = [_drawn(case, kind, system, name) for case, name in zip(cases, names)]
+        for left, right in zip_longest(*drawn):
+            left_picture = left if isinstance(left, Picture) else None
+            right_picture = right if isinstance(right, Picture) else None
+            if left_picture or right_picture:
+                yield Pair(left_picture, right_picture)
 
 
 def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Iterator[SectionItem]:
     """Yield both mechanisms, the key values that say most with their differences, verdicts and warnings of each."""
     yield from _pairs(cases, "", names, system)
+
+    # the same facts of both, in the order of the first
     ids = dict.fromkeys(id for case in cases for id in facts_of(case))
-    facts = [facts_of(case, ids).values() for case in cases]
-    titles = {fact.quantity: fact.title for some in facts for fact in some}
-    numbers = [{fact.quantity: fact.value for fact in some} for some in facts]
+    titles: dict[Quantity, str] = {}
+    numbers = []
+    for case in cases:
+        facts = facts_of(case, ids).values()
+        titles |= {fact.quantity: fact.title for fact in facts}
+        numbers.append({fact.quantity: fact.value for fact in facts})
     yield Grid("", _heads(names), _compared(numbers, system, titles), (1, 2, 4))
+
     for case, name in zip(cases, names):
-        warnings = [*of_machine(case)]
-        found = (*limit_verdicts(case), *(Notice(text, "warning") for text in warnings))
-        yield from (f"{name}:", *found) if found else ()
+        warnings = [Notice(text, "warning") for text in of_machine(case)]
+        items = [*limit_verdicts(case), *warnings]
+        if items:
+            yield f"{name}:"
+            yield from items
         if not warnings:
             yield Notice(f"{name}: no warnings.", "good")
 
@@ -281,51 +315,64 @@ def _key_values(
     cases: Sequence[Case], names: Sequence[str], command: str, system: str
 ) -> Iterator[Grid]:
     """Yield the key values of both machines, cylinder by cylinder, identical ones once."""
-    each = (
-        [one for one in results_if_any(partial(subjects_of, case, command)) if one.results]
-        for case in cases
-    )
-    pairs = [*zip_longest(*each)]
+    subjects = []
+    for case in cases:
+        of_case = results_if_any(partial(subjects_of, case, command))
+        subjects.append([subject for subject in of_case if subject.results])
+    pairs = list(zip_longest(*subjects))
+
     compared = []
     for pair in pairs:
         numbers = [_numbers(subject, command) for subject in pair]
-        meanings = {quantity: quantity.text for some in numbers for quantity in some}
+        meanings = {quantity: quantity.text for quantity in chain(*numbers)}
         compared.append(((pair[0] or pair[1]).name, _compared(numbers, system, meanings)))
-    for equal in grouped(compared, itemgetter(1)):
-        if rows := equal[0][1]:
-            title = together([name for name, _ in equal]) if len(pairs) > 1 else "Key values"
+    for group in grouped(compared, itemgetter(1)):
+        _, rows = group[0]
+        title = together([name for name, _ in group]) if len(pairs) > 1 else "Key values"
+        if rows:
             yield Grid(title, _heads(names), rows, (1, 2, 4))
 
 
 def _numbers(subject: Subject | None, command: str) -> dict[Quantity, float]:
     """Return the key values of a subject in SI, without lists and residuals."""
-    found = results_if_any(partial(subject.key_values, command)) if subject else []
-    numbers = {quantity: number_of(value) for quantity, value in found if not quantity.residual}
-    return {
-        quantity: number for quantity, number in numbers.items() if isinstance(number, (int, float))
-    }
+    if not subject:
+        return {}
+    numbers = {}
+    for quantity, value in results_if_any(partial(subject.key_values, command)):
+        number = number_of(value)
+        if isinstance(number, (int, float)) and not quantity.residual:
+            numbers[quantity] = number
+    return numbers
 
 
 def _compared(
     numbers: Sequence[dict[Quantity, float]], system: str, meanings: dict[Quantity, str]
 ) -> tuple[tuple[FactValue, ...], ...]:
     """Return a row for each key value of two machines: symbol, both values, unit, difference, meaning."""
-    one, other = numbers
-    pairs = {quantity: (one.get(quantity), other.get(quantity)) for quantity in (*one, *other)}
-    units = units_of(
-        [(of.kind, of.family, max(map(size_of, pair))) for of, pair in pairs.items()], system
-    )
+    left, right = numbers
+    pairs = {quantity: (left.get(quantity), right.get(quantity)) for quantity in (*left, *right)}
+    sizes = [
+        (quantity.kind, quantity.family, max(map(size_of, pair)))
+        for quantity, pair in pairs.items()
+    ]
     rows = []
-    for (quantity, (first, second)), unit in zip(pairs.items(), units):
-        shown = [
-            _NONE if value is None else float(convert(value, quantity.kind, unit))
-            for value in (first, second)
-        ]
-        difference = _NONE
-        if first is not None and second is not None and (first or not second):
-            percent = 100 * (second - first) / abs(first) if first else 0.0
-            difference = f"{percent:+.{2 if abs(percent) < 100 else 0}f} %" if percent else "0 %"
-        rows.append(
-            (quantity.symbol, *shown, quantity.marked(unit), difference, meanings[quantity])
-        )
+    for (quantity, pair), unit in zip(pairs.items(), units_of(sizes, system)):
+        shown = list[FactValue]()
+        for value in pair:
+            in_unit = None if value is None else float(convert(value, quantity.kind, unit))
+            shown.append(_NONE if in_unit is None else in_unit)
+        marked = quantity.marked(unit)
+        rows.append((quantity.symbol, *shown, marked, _difference(*pair), meanings[quantity]))
     return tuple(rows)
+
+
+def _difference(first: float | None, second: float | None) -> str:
+    """Return by how many percent the second value differs from the first."""
+    if first is None or second is None:
+        return _NONE
+    if not first:
+        return _NONE if second else "0 %"
+    percent = 100 * (second - first) / abs(first)
+    if not percent:
+        return "0 %"
+    return f"{percent:+.2f} %" if abs(percent) < 100 else f"{percent:+.0f} %"

@@ -15,7 +15,7 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
 from kurbel.quantity import Formula, Of, Quantity
 from kurbel.solver.figures import AtAngles, Results
-from kurbel.tables.frame import too_large
+from kurbel.tables.shown import too_large
 
 PHI = "phi"
 FINENESS = 1 / 2000

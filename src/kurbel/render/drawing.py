@@ -3,8 +3,7 @@
 import importlib.util
 import json
 import os
-from collections.abc import Iterable, Sequence
-from itertools import islice
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Literal
 
 import numpy as np
@@ -15,7 +14,7 @@ from kurbel.render import Look
 from kurbel.render.braille import braille
 from kurbel.render.output import look_at, opened, write_lines
 from kurbel.render.svg import poster_svg, svg_file
-from kurbel.render.text import BLANK, DIGITS, subscripts
+from kurbel.render.text import BLANK, DIGITS, Line, subscripts
 
 _PAGE = """#set document(date: none)
 #set page(width: auto, height: auto, margin: 0pt)
@@ -31,10 +30,13 @@ def check_file(file_name: str, option: str = "--output", poster: bool = False) -
     kind = os.path.splitext(file_name)[1].lower()[1:]
     if kind not in ("svg", "png", "pdf"):
         raise UsageError(f"{option} {file_name}: the name of a picture ends in .svg, .png or .pdf")
-    if (kind != "svg" or poster) and importlib.util.find_spec("typst") is None:
+    needs_typst = kind != "svg" or poster
+    if needs_typst and importlib.util.find_spec("typst") is None:
+        what = "poster" if poster else kind
+        remedy = "" if poster else "; svg needs no package"
         raise UsageError(
-            f"{option} {file_name}: a {'poster' if poster else kind} needs typst, which is not installed: "
-            f"pip install 'kurbel[plot]'{'' if poster else '; svg needs no package'}"
+            f"{option} {file_name}: a {what} needs typst, which is not installed: "
+            f"pip install 'kurbel[plot]'{remedy}"
         )
     return kind
 
@@ -45,8 +47,15 @@ def draw_output(pictures: Iterable[Picture], look: Look, file_name: str | None) 
         draw_file(list(pictures), look, file_name)
         return
     look = look_at(None, look)
-    lines = (line for picture in pictures for line in (BLANK, *braille(picture, look)))
-    write_lines(islice(lines, 1, None), look)
+    write_lines(_below_one_another(pictures, look), look)
+
+
+def _below_one_another(pictures: Iterable[Picture], look: Look) -> Iterator[Line]:
+    """Yield the lines of pictures, with a blank line between two."""
+    for number, picture in enumerate(pictures):
+        if number:
+            yield BLANK
+        yield from braille(picture, look)
 
 
 def draw_file(pictures: Sequence[Picture], look: Look, file_name: str) -> None:
@@ -108,7 +117,7 @@ _SHEET = """
 
 def check_poster(size: str, file_name: str | None) -> str:
     """Return the size of a sheet as it is named; raises UsageError where none can be drawn to this file."""
-    named = next((one for one in SIZES if one.lower() == size.lower()), None)
+    named = next((name for name in SIZES if name.lower() == size.lower()), None)
     if named is None:
         raise UsageError(f"--poster {size}: there are {', '.join(SIZES)}")
     if file_name is None or not file_name.lower().endswith((".pdf", ".svg")):
@@ -124,11 +133,11 @@ def draw_poster(
 ) -> None:
     """Draw the first panel of a picture as a sheet of this size to a file; line: what is below its name."""
     panel = picture.panels[0]
-    x, y = (
-        axis._replace(low=None, high=None) for axis in (panel.x, panel.y)
-    )  # no room for forces, which are left out
+    # no room for forces, which are left out
+    x = panel.x._replace(low=None, high=None)
+    y = panel.y._replace(low=None, high=None)
     panel = panel._replace(x=x, y=y, curves=(), title="")
-    across, up = (np.concatenate(one) for one in panel.places)
+    across, up = (np.concatenate(arrays) for arrays in panel.places)
     wide = bool(np.ptp(across) > 0.95 * np.ptp(up))
     title = look.text(picture.machine)
     words = {
@@ -144,14 +153,13 @@ def draw_poster(
         file.write(drawn)
 
 
-def _fact(one: Fact, look: Look) -> dict[str, object]:
-    value, unit = look.measured(one.value, one.unit, DIGITS)
-    symbol = subscripts(look.text(one.symbol))
-    where = f" {look.text(one.where)}"
+def _fact(fact: Fact, look: Look) -> dict[str, object]:
+    """Return what the sheet says of a key value."""
+    value, unit = look.measured(fact.value, fact.unit, DIGITS)
     return {
-        "title": look.text(one.title),
+        "title": look.text(fact.title),
         "value": look.fine(value),
         "unit": unit,
-        "symbol": symbol,
-        "where": where,
+        "symbol": subscripts(look.text(fact.symbol)),
+        "where": f" {look.text(fact.where)}",
     }

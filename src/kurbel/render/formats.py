@@ -31,10 +31,12 @@ def _pieces(report: Report, look: Look) -> Iterable[str]:
     return markup(report, look)
 
 
-def _lines(report: Report, look: Look, first: Sequence[str] | None = None) -> Iterator[Line]:
+def _lines(
+    report: Report, look: Look, first: Sequence[str] | None = None, named: Sequence[str] = ()
+) -> Iterator[Line]:
     from kurbel.render.page import fitting, page_lines
 
-    return page_lines(report, look) if first is None else fitting(report, look, first)
+    return page_lines(report, look) if first is None else fitting(report, look, first, named)
 
 
 class Output(NamedTuple):
@@ -43,17 +45,20 @@ class Output(NamedTuple):
     look: Look
     file_name: str | None
 
-    def write(self, report: Report, first: Sequence[str] | None = None) -> None:
+    def write(
+        self, report: Report, first: Sequence[str] | None = None, named: Sequence[str] = ()
+    ) -> None:
         """Write the report to the file (as UTF-8), or to standard output in its encoding. Raises UsageError.
 
         first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
+        named: those of its key values that stay, however few the lines.
 
         On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text,
         folded only to a given width.
         """
         look = look_at(self.file_name, self.look)
         if look.format == "table" and self.file_name in (None, "-"):
-            write_lines(_lines(report, look, first), look)
+            write_lines(_lines(report, look, first, named), look)
         else:
             if look.format in ("html", "latex"):  # always read as UTF-8
                 look = look._replace(encoding="utf-8")

@@ -3,7 +3,7 @@
 import json
 import os
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from itertools import chain, repeat
 from typing import Any
@@ -20,6 +20,7 @@ from kurbel.tables.tables import (
     InputFile,
     KeyValue,
     Part,
+    PlaceTable,
     Provenance,
     Report,
 )
@@ -39,18 +40,17 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
         )
     content: Content = {"kurbel": __version__, "format": FORMAT, "command": report.command}
     if report.machine is not None:
-        content |= {
-            "machine": report.machine,
-            **_made_from(report.provenance and report.provenance()),
-        }
+        content["machine"] = report.machine
+        content |= _made_from(report.provenance and report.provenance())
     if report.head:
         content["head"] = list(report.head)
-    ratios = report.group == "ratios"
-    if ratios or report.parts:
-        content[report.group] = [_named(part, ratios, look) for part in report.parts]
+    with_ratios = report.group == "ratios"
+    if with_ratios or report.parts:
+        content[report.group] = [_named(part, with_ratios, look) for part in report.parts]
     if report.whole is not None:
-        whole = _results(report.whole, look).items()
-        content |= {f"machine_{key}": value for key, value in whole if value or not ratios}
+        for key, value in _results(report.whole, look).items():
+            if value or not with_ratios:
+                content[f"machine_{key}"] = value
     if report.notes:
         content["notes"] = list(report.notes)
     return chain(_pieces(content, "\n", look), "\n")
@@ -60,21 +60,31 @@ def findings_json(
     machine: str | None, made_from: Provenance | None, findings: list[dict[str, object]], look: Look
 ) -> Iterator[str]:
     """Yield a check as one JSON object in pieces, a line for every finding; machine: None where the file has none."""
-    head = {"kurbel": __version__, "format": FORMAT, "command": "check", "machine": machine}
-    return chain(_pieces({**head, **_made_from(made_from), "findings": findings}, "\n", look), "\n")
+    content: Content = {
+        "kurbel": __version__,
+        "format": FORMAT,
+        "command": "check",
+        "machine": machine,
+        **_made_from(made_from),
+        "findings": findings,
+    }
+    return chain(_pieces(content, "\n", look), "\n")
 
 
-def _made_from(given: Provenance | None) -> dict[str, object]:
-    if given is None:
+def _made_from(provenance: Provenance | None) -> dict[str, object]:
+    """Return what results depend on, as JSON has it."""
+    if provenance is None:
         return {}
-    versions = {"kurbel": __version__, **given.versions}
-    inputs = [{"file": one.file, "sha256": sha256_of(one)} for one in given.inputs]
-    return {"inputs": inputs, "overrides": list(given.overrides), "versions": versions}
+    return {
+        "inputs": [{"file": file.file, "sha256": sha256_of(file)} for file in provenance.inputs],
+        "overrides": list(provenance.overrides),
+        "versions": {"kurbel": __version__, **provenance.versions},
+    }
 
 
-def sha256_of(one: InputFile) -> str | None:
+def sha256_of(file: InputFile) -> str | None:
     """Return the SHA-256 of a file that was read, None if it is gone."""
-    return None if one.content is None else sha256(one.content).hexdigest()
+    return None if file.content is None else sha256(file.content).hexdigest()
 
 
 def _named(part: Part, ratio: bool, look: Look) -> Content:
@@ -82,76 +92,118 @@ def _named(part: Part, ratio: bool, look: Look) -> Content:
     results = _results(part, look)
     if not ratio:
         return {"name": part.name, **results}
-    name = "inf" if part.name == float("inf") else whole_if_integral(float(part.name))
-    return {"rod_ratio": name, **{key: value for key, value in results.items() if value}}
+    rod_ratio = "inf" if part.name == float("inf") else whole_if_integral(float(part.name))
+    with_content = {key: value for key, value in results.items() if value}
+    return {"rod_ratio": rod_ratio, **with_content}
 
 
 def _results(part: Part, look: Look) -> Content:
     """Return what JSON has of a part; its columns are still to be written, one after another."""
+    key_values = []
+    for key_value in part.key_values:
+        entry = _key_value(key_value, key_value.value, look)
+        if key_value.at_deg is not None:
+            entry["at_deg"] = rounded(key_value.at_deg, look.digits)
+        if key_value.side:
+            entry["side"] = key_value.side
+        key_values.append(entry)
 
-    def number(value: CellValue) -> CellValue:
-        return rounded(value, look.digits)
-
-    def key_value(one: Column | KeyValue, value: object, **more: object) -> dict[str, object]:
-        return {"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value, **more}
-
-    places, key_values, pistons = list[Content](), list[Content](), list[Content]()
+    tables, pistons = list[Content](), list[Content]()
     for table in part.place_tables:
         if table.id == PISTONS:
-            for names, *values in zip(table.names, *(column.values for column in table.columns)):
-                own = [key_value(one, number(value)) for one, value in zip(table.columns, values)]
-                pistons.append({"name": names[0], "key_values": own})
+            pistons += _pistons(table, look)
         else:
-            rows = (
-                {"rows": [dict(zip(table.heads, names)) for names in table.names]}
-                if table.heads
-                else {}
-            )
-            places.append(
-                {"id": table.id, "title": table.title, **rows, "columns": list(table.columns)}
-            )
-    for one in part.key_values:
-        at: Content = {} if one.at_deg is None else {"at_deg": number(one.at_deg)}
-        if one.side:
-            at["side"] = one.side
-        value = list(map(number, one.value)) if isinstance(one.value, tuple) else number(one.value)
-        key_values.append(key_value(one, value, **at))
-    return {
-        "columns": list(part.columns),
-        **({"place_tables": places} if places else {}),
-        "key_values": key_values,
-        **({"pistons": pistons} if pistons else {}),
-        "left_out": [one._asdict() for one in part.left_out],
-        "warnings": list(part.warnings),
-    }
+            tables.append(_table(table))
+
+    content: Content = {"columns": list(part.columns)}
+    if tables:
+        content["place_tables"] = tables
+    content["key_values"] = key_values
+    if pistons:
+        content["pistons"] = pistons
+    content["left_out"] = [left_out._asdict() for left_out in part.left_out]
+    content["warnings"] = list(part.warnings)
+    return content
+
+
+def _key_value(
+    quantity: Column | KeyValue, value: CellValue | tuple[float, ...], look: Look
+) -> Content:
+    """Return a key value with its numbers to the wanted digits."""
+    shown: object
+    if isinstance(value, tuple):
+        shown = [rounded(number, look.digits) for number in value]
+    else:
+        shown = rounded(value, look.digits)
+    return {"id": quantity.id, "symbol": quantity.symbol, "unit": quantity.unit, "value": shown}
+
+
+def _pistons(table: PlaceTable, look: Look) -> Iterator[Content]:
+    """Yield the pistons of a table as key values under their names."""
+    for row, names in enumerate(table.names):
+        key_values = [_key_value(column, column.values[row], look) for column in table.columns]
+        yield {"name": names[0], "key_values": key_values}
+
+
+def _table(table: PlaceTable) -> Content:
+    """Return a table of places: the names of its rows, if they have any, and its columns."""
+    content: Content = {"id": table.id, "title": table.title}
+    if table.heads:
+        content["rows"] = [dict(zip(table.heads, names)) for names in table.names]
+    content["columns"] = list(table.columns)
+    return content
 
 
 def _pieces(node: object, line_end: str, look: Look) -> Iterator[str]:
     """Yield a node in pieces: on one line, or with a line for each entry if one of them is an object."""
-    if isinstance(node, Column):
-        phi = node.id == "phi"  # crank angles have all digits
-        values = [
-            whole_if_integral(value) if phi else rounded(value, look.digits)
-            for value in node.values
-        ]
-        marked = {"marked": node.marked} if node.marked else {}
-        node = {"id": node.id, "symbol": node.symbol, "unit": node.unit, "values": values, **marked}
-    elif isinstance(node, (dict, list)) and _holds_object(node):
+    if isinstance(node, (dict, list)) and _holds_object(node):
         start, end = "{}" if isinstance(node, dict) else "[]"
-        heads = (f"{json.dumps(key)}: " for key in node) if isinstance(node, dict) else repeat("")
-        for head, child in zip(heads, node.values() if isinstance(node, dict) else node):
+        heads: Iterable[str] = repeat("")
+        children: Iterable[object] = node
+        if isinstance(node, dict):
+            heads = (f"{json.dumps(key)}: " for key in node)
+            children = node.values()
+        for head, child in zip(heads, children):
             yield f"{start}{line_end} {head}"
             yield from _pieces(child, line_end + " ", look)
             start = ","
         yield end
         return
+
+    content = _column(node, look) if isinstance(node, Column) else node
     # characters that turn the writing are escaped
-    yield json.dumps(node, ensure_ascii=not look.has("φ"), allow_nan=False).translate(_ESCAPED)
+    in_ascii = not look.has("φ")
+    yield json.dumps(content, ensure_ascii=in_ascii, allow_nan=False).translate(_ESCAPED)
+
+
+def _column(column: Column, look: Look) -> Content:
+    """Return a column with its numbers to the wanted digits; crank angles have all of theirs."""
+    if column.id == "phi":
+        values = [whole_if_integral(angle) for angle in column.values]
+    else:
+        values = [rounded(value, look.digits) for value in column.values]
+    content: Content = {
+        "id": column.id,
+        "symbol": column.symbol,
+        "unit": column.unit,
+        "values": values,
+    }
+    if column.marked:
+        content["marked"] = column.marked
+    return content
 
 
 def _holds_object(node: object) -> bool:
-    children = node.values() if isinstance(node, dict) else node if isinstance(node, list) else ()
-    return any(isinstance(child, (dict, Column)) or _holds_object(child) for child in children)
+    """Return whether an object of JSON is anywhere in a node."""
+    if isinstance(node, dict):
+        return any(_is_object(child) for child in node.values())
+    if isinstance(node, list):
+        return any(_is_object(child) for child in node)
+    return False
+
+
+def _is_object(node: object) -> bool:
+    return isinstance(node, (dict, Column)) or _holds_object(node)
 
 
 def answer_schema() -> object:
@@ -180,39 +232,44 @@ def findings_junit(
     sentence after its key, and none occurs twice. Elements and attributes are those of the schema of Jenkins.
     """
     root = ElementTree.Element("testsuites", name="kurbel")
-    for file, found in checks:
-        file, names = look.data(file), Counter[str]()
-        broken = sum(one["severity"] == "error" for one in found)
-        counts = {
-            "tests": str(max(len(found), 1)),
-            "failures": str(broken),
+    for file, findings in checks:
+        file_name = look.data(file)
+        failures = sum(finding["severity"] == "error" for finding in findings)
+        attributes = {
+            "name": file_name,
+            "tests": str(max(len(findings), 1)),
+            "failures": str(failures),
             "errors": "0",
             "skipped": "0",
         }
-        suite = ElementTree.SubElement(root, "testsuite", {"name": file, **counts})
-        if not found:  # a file of results without a test counts as a fault
-            ElementTree.SubElement(suite, "testcase", classname=file, name="valid machine")
-        for one in found:
-            error, key, message = (
-                one["severity"] == "error",
-                one["key"] or "",
-                look.data(one["message"]),
-            )
-            of_limit = key.startswith(("limits.", "expect.")) and message.startswith(
-                key.partition(".")[2]
-            )
-            if error and not of_limit and not message.startswith(key):
-                message = f"{key}: {message}"
-            name = message.partition(": ")[0] if of_limit else message
+        suite = ElementTree.SubElement(root, "testsuite", attributes)
+        if not findings:  # a file of results without a test counts as a fault
+            ElementTree.SubElement(suite, "testcase", classname=file_name, name="valid machine")
+        names = Counter[str]()
+        for finding in findings:
+            name, message = _junit_name(finding, look)
             names[name] += 1
-            name += f" ({names[name]})" if names[name] > 1 else ""
-            case = ElementTree.SubElement(suite, "testcase", classname=file, name=name)
-            if error:
-                place = ":".join(str(part) for part in (file, one["line"], one["column"]) if part)
-                ElementTree.SubElement(
-                    case, "failure", message=message, type="error"
-                ).text = f"{place}: {message}"
+            if names[name] > 1:
+                name = f"{name} ({names[name]})"
+            case = ElementTree.SubElement(suite, "testcase", classname=file_name, name=name)
+            if finding["severity"] == "error":
+                parts = (file_name, finding["line"], finding["column"])
+                position = ":".join(str(part) for part in parts if part)
+                failure = ElementTree.SubElement(case, "failure", message=message, type="error")
+                failure.text = f"{position}: {message}"
             else:
                 ElementTree.SubElement(case, "system-out").text = message
     ElementTree.indent(root, "")
     yield f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, "unicode")}\n'
+
+
+def _junit_name(finding: Mapping[str, Any], look: Look) -> tuple[str, str]:
+    """Return the name of the case of a finding, and its sentence."""
+    key = finding["key"] or ""
+    message = look.data(finding["message"])
+    is_limit = key.startswith(("limits.", "expect.")) and message.startswith(key.partition(".")[2])
+    if is_limit:
+        return message.partition(": ")[0], message
+    if finding["severity"] == "error" and not message.startswith(key):
+        message = f"{key}: {message}"
+    return message, message

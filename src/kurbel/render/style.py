@@ -123,10 +123,12 @@ svg .still{display:none}
 
 def page_css(*more: str) -> str:
     """Return the style sheet of a page."""
-    light, dark = (
-        ";".join(f"--{name}:{both[mode]}" for name, both in COLOURS.items()) for mode in (0, 1)
+    light = ";".join(f"--{name}:{shades[0]}" for name, shades in COLOURS.items())
+    dark = ";".join(f"--{name}:{shades[1]}" for name, shades in COLOURS.items())
+    return (
+        f":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n"
+        f"{PAGE}{''.join(more)}"
     )
-    return f":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n{PAGE}{''.join(more)}"
 
 
 def picture_css(paper: bool = False) -> str:
@@ -134,9 +136,8 @@ def picture_css(paper: bool = False) -> str:
 
     paper: of what can neither be dark nor move.
     """
-    light, dark = (
-        re.sub(r"var\(--(\w+)\)", lambda name: COLOURS[name[1]][mode], PICTURE_COLOURS)  # noqa: B023 (used at once)
-        for mode in (0, 1)
-    )
-    on_screen = f"{MOVING}@media screen and (prefers-color-scheme:dark){{{dark}}}\n"
-    return f"{PICTURE}{light}{'' if paper else on_screen}"
+    light = re.sub(r"var\(--(\w+)\)", lambda name: COLOURS[name[1]][0], PICTURE_COLOURS)
+    if paper:
+        return PICTURE + light
+    dark = re.sub(r"var\(--(\w+)\)", lambda name: COLOURS[name[1]][1], PICTURE_COLOURS)
+    return f"{PICTURE}{light}{MOVING}@media screen and (prefers-color-scheme:dark){{{dark}}}\n"

@@ -70,18 +70,18 @@ def head_scale(values: Sequence[CellValue], digits: int | None = None) -> Scale:
     (Scale(decimals=3, exponent=0), Scale(decimals=3, exponent=0))
     """
     angles = [value for value in values if value is not None]
-    are_written = all(
-        abs(value - round(value, _MOST_DECIMALS)) <= 1e-12 * abs(value) for value in angles
-    )
-    if are_written:
+    if all(_is_written(value) for value in angles):
         return Scale(_most_decimals(angles, _MOST_DECIMALS))
-    decimals = angle_scale(angles, digits).decimals
     different = len({round(value, _MOST_DECIMALS) for value in angles})
-    while (
-        decimals < _MOST_DECIMALS and len({round(value, decimals) for value in angles}) < different
-    ):
-        decimals += 1
-    return Scale(decimals)
+    for decimals in range(angle_scale(angles, digits).decimals, _MOST_DECIMALS):
+        if len({round(value, decimals) for value in angles}) == different:
+            return Scale(decimals)
+    return Scale(max(_MOST_DECIMALS, angle_scale(angles, digits).decimals))
+
+
+def _is_written(value: float) -> bool:
+    """Return whether an angle has no more decimals than a table shows, as people write angles."""
+    return abs(value - round(value, _MOST_DECIMALS)) <= 1e-12 * abs(value)
 
 
 _MOST_DECIMALS = 6
@@ -121,7 +121,7 @@ def in_thousands(text: str) -> str:
     'J = 18_066.25, -1_234_567; 1234, 0.123456, run-10000.csv'
     """
     long = r"(?<![\w.,^-])-?[1-9]\d{4,}(?=[.,]\d|[.,;]?(?:\s|$)|\))"
-    return re.sub(long, lambda found: f"{int(found[0]):_}".replace("_", _THIN), text)
+    return re.sub(long, lambda number: f"{int(number[0]):_}".replace("_", _THIN), text)
 
 
 def single(value: float, digits: int | None = None, own: int = 0) -> tuple[str, int]:
@@ -141,9 +141,10 @@ def single(value: float, digits: int | None = None, own: int = 0) -> tuple[str, 
     small, large = (-2, 5) if own else (_SMALL, _LARGE)
     exponent = 0 if small <= power < large else power
     decimals = count - 1 - power + exponent
-    return cell(
-        value, Scale(decimals if digits and not own else max(0, decimals), exponent)
-    ), exponent
+    # only digits that were asked for round whole numbers, too
+    if own or not digits:
+        decimals = max(0, decimals)
+    return cell(value, Scale(decimals, exponent)), exponent
 
 
 def angle(value: float, decimals: int = 2) -> str:
@@ -169,7 +170,10 @@ def rounded(value: CellValue, digits: int | None) -> CellValue:
 
 def whole_if_integral(value: CellValue) -> CellValue:
     """Return 10 for 10.0, so that angles and ratios are written as people write them."""
-    return int(value) if value is not None and abs(value) < 1e15 and value == int(value) else value
+    if value is None:
+        return None
+    is_integral = abs(value) < 1e15 and value == int(value)
+    return int(value) if is_integral else value
 
 
 # texts
@@ -232,10 +236,12 @@ class Look(NamedTuple):
         text = text.translate(_CONTROL)
         if self.has(text):
             return text
-        plain = (normalize("NFKD", c).encode("ascii", "ignore").decode() for c in text)
-        return "".join(
-            c if self.has(c) else _ASCII.get(c) or other or "?" for c, other in zip(text, plain)
-        )
+        return "".join(c if self.has(c) else self._replaced(c) for c in text)
+
+    def _replaced(self, character: str) -> str:
+        """Return what is written for a character that the encoding lacks."""
+        plain = normalize("NFKD", character).encode("ascii", "ignore").decode()
+        return _ASCII.get(character) or plain or "?"
 
     def sentence(self, text: str) -> str:
         """Return a sentence for people, its numbers as they are wanted."""
@@ -297,14 +303,17 @@ class Look(NamedTuple):
         >>> Look().unit("m/s^2"), Look().unit("N", 6), Look(encoding="ascii").unit("N", 6)
         ('m/s²', '10⁶ N', '10^6 N')
         """
-        printed = {"deg": "°"}.get(unit, unit.replace("^2", "²").replace("^3", "³"))
-        printed = printed if self.has(printed) else unit
+        printed = "°" if unit == "deg" else unit.replace("^2", "²").replace("^3", "³")
+        if not self.has(printed):
+            printed = unit
         return f"{self._power(exponent)} {printed}".strip() if exponent else printed
 
     def counted(self, number: str, exponent: int) -> str:
         """Return a number with its power of ten: `2.4·10⁶`, or `2.4e6`."""
+        if not exponent:
+            return number
         printed = "·" + self._power(exponent)
-        return f"{number}{printed if self.has(printed) else f'e{exponent}'}" if exponent else number
+        return number + printed if self.has(printed) else f"{number}e{exponent}"
 
     def _power(self, exponent: int) -> str:
         printed = "10" + str(exponent).translate(_SUPERSCRIPT)
@@ -315,7 +324,11 @@ def width(text: str) -> int:
     """Return the number of terminal cells of a text: none for an accent, two for a wide character."""
     if text.isascii():
         return len(text)
-    return sum(0 if combining(c) else 2 if east_asian_width(c) in "WF" else 1 for c in text)
+    cells = 0
+    for character in text:
+        if not combining(character):
+            cells += 2 if east_asian_width(character) in "WF" else 1
+    return cells
 
 
 def padded(text: str, cells: int, flush_right: bool = False) -> str:
@@ -342,7 +355,7 @@ def line(text: str, role: str = "text") -> Line:
 
 def paragraph(text: str, cells: int | None, role: str = "text") -> list[Line]:
     """Return a text in lines of so many cells; see `folded`."""
-    return [line(one, role) for one in folded(text, cells)]
+    return [line(row, role) for row in folded(text, cells)]
 
 
 def plain_lines(lines: Iterable[Line]) -> Iterator[str]:
@@ -355,32 +368,32 @@ def folded(text: str, cells: int | None) -> list[str]:
     """Return a text in lines of so many cells, None for one line; no word is broken, no number parted from its unit."""
     if cells is None or width(text) <= cells:
         return [text]
-    kept = measures().sub(lambda found: found[0].replace(" ", _NO_BREAK), text)
-    return [
-        one.replace(_NO_BREAK, " ")
-        for one in wrap(kept, cells, break_long_words=False, break_on_hyphens=False)
-    ]
+    kept = measures().sub(lambda measure: measure[0].replace(" ", _NO_BREAK), text)
+    rows = wrap(kept, cells, break_long_words=False, break_on_hyphens=False)
+    return [row.replace(_NO_BREAK, " ") for row in rows]
 
 
 def in_two_columns(
-    found: Iterable[tuple[str, str]], look: Look, indent: str = "  "
+    entries: Iterable[tuple[str, str]], look: Look, indent: str = "  "
 ) -> Iterator[Line]:
     """Yield heads in a column, each with its sentence."""
-    heads = [(look.text(head), text) for head, text in found]
-    column = max((width(head) for head, _ in heads), default=0)
-    for head, text in heads:
+    rows = [(look.text(head), text) for head, text in entries]
+    column = max((width(head) for head, _ in rows), default=0)
+    for head, text in rows:
         yield from sentence(f"{indent}{padded(head, column)}  ", text, look)
 
 
 def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
     """Yield a head and its sentence, which is folded next to it, or below it if there is little room."""
-    text, room = look.sentence(text), None if look.width is None else look.width - width(head)
+    text = look.sentence(text)
+    room = None if look.width is None else look.width - width(head)
     if room is not None and room < min(width(text), _NARROWEST):
         if head.strip():
             yield line(head, "cell")
-        head, room = " " * 6, max((look.width or 0) - 6, _NARROWEST)
-    for one in folded(text, room):
-        yield (Piece(head, "cell"), Piece(one))
+        head = " " * 6
+        room = max((look.width or 0) - 6, _NARROWEST)
+    for row in folded(text, room):
+        yield (Piece(head, "cell"), Piece(row))
         head = " " * width(head)
 
 
@@ -391,8 +404,10 @@ def measures() -> re.Pattern[str]:
     >>> measures().findall("within 10 % of 2.35 kN m at 5 points")
     ['10 %', '2.35 kN m']
     """
-    of_kinds = [each for system in SYSTEMS.values() for each in system.values()]
-    units = {unit for kind in of_kinds for unit in ([kind] if isinstance(kind, str) else kind)}
+    units = set[str]()
+    for system in SYSTEMS.values():
+        for of_kind in system.values():
+            units.update([of_kind] if isinstance(of_kind, str) else of_kind)
     printed = {"%", "°", *units, *map(Look().unit, units)} - {""}
     longest_first = "|".join(map(re.escape, sorted(printed, key=len, reverse=True)))
     return re.compile(rf"(?:\S|{_THIN})*\d  ?(?:{longest_first})(?!\w)")

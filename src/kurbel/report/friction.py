@@ -5,7 +5,7 @@ import math
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.friction import holding_force
-from kurbel.tables.frame import PlaceRow, Places, shown_key_values
+from kurbel.tables.shown import PlaceRow, Places, shown_key_values
 from kurbel.tables.tables import LeftOut, Part, Report
 
 _UP = Quantity("P_up", "P/Q", "ratio", "Force over the weight that moves the body up")
@@ -25,7 +25,7 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
     """
     _check(incline, coefficient, direction)
     requested = {
-        f"{direction:g}_deg_above_plane" if direction else "along_plane": direction,
+        f"{direction:g} deg above plane" if direction else "along plane": direction,
         "horizontal": -incline,
     }
     left: list[LeftOut] = []
@@ -36,7 +36,7 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
             try:
                 forces[quantity.id] = holding_force(incline, friction, angle)
             except NoSolutionError:
-                what = f"{quantity.symbol} {name.replace('_', ' ')}"
+                what = f"{quantity.symbol} {name}"
                 left.append(LeftOut(what, "no force does it, however large: the body locks itself"))
         rows.append(((name,), forces))
     table = Places(

@@ -8,7 +8,8 @@ from kurbel.notes.warnings import of_machine, rods_on_pin, shells
 from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.stress import PARTS, CrankshaftStrength, ThrowStrength
-from kurbel.tables.frame import Functions, PlaceRow, Places, Subject
+from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.shown import PlaceRow, Places
 
 STRESSES = by_id(
     Quantity(
@@ -91,7 +92,8 @@ def _stress_tables(throw: ThrowStrength, called: str = "") -> Iterator[Places]:
             )
             values = (place.degrees, *stresses, place.combined, place.von_mises)
             numbers = (None if stress is None else float(stress) for stress in values)
-            rows.append(((place.part, place.name), dict(zip(("phi", *STRESSES), numbers))))
+            part = _name_of(place.part)
+            rows.append(((part, place.name), dict(zip(("phi", *STRESSES), numbers))))
         yield Places(id, called + title, ("part", "place"), {"phi": PHI, **STRESSES}, rows)
 
 
@@ -112,6 +114,12 @@ def _throw_table(strength: CrankshaftStrength) -> Iterator[Places]:
         rows.append(((throw.name, cylinders), values))
     title = "Throws along the shaft: largest combined stresses over the cycle"
     yield Places("throws", title, ("throw", "cylinders"), THROWS, rows)
+
+
+def _name_of(part: str) -> str:
+    """Return what people call a part of a crankshaft: `web A`; the pin has no article in a table."""
+    _, name = PARTS[part]
+    return name if part != "pin" else part
 
 
 def _stress_notes(case: Case) -> Iterator[str]:

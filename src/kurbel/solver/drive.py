@@ -14,6 +14,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.batch import taken
+from kurbel.machine.cylinder import crank_lag
 from kurbel.machine.parts import GasOnRings
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
@@ -60,6 +61,8 @@ class Drive:
     count: number of machines, whose numbers are then arrays (machines,); None for one machine. index: in a copy made by
     `taken`, the machine of every angle or piece (n,).
 
+    lag: δ in degrees, by which its own crank angle lags that of cylinder 1; see `crank_lag`.
+
     revolutions, cycle: turns and degrees of crank angle per working cycle of this cylinder; omega: rad/s or None.
 
     mass: reciprocating, 0 without masses; rod: a connecting rod given by centre of gravity and moment of inertia, else
@@ -87,6 +90,7 @@ class Drive:
     ) -> None:
         self.machine, self.cylinder, self.count, self.index = machine, cylinder, count, index
         self.name, self.mechanism = cylinder.name, cylinder.mechanism
+        self.lag = crank_lag(cylinder, machine.cylinders[0])
         self.revolutions = CYCLES[machine.cycle_of(cylinder)]
         self.cycle = 360.0 * self.revolutions
         self.omega = None if machine.speed is None else 2 * math.pi * machine.speed

@@ -1,6 +1,6 @@
 """Turning effort M of the whole machine over the angle φ of crank 1, its load, and the excess work.
 
-    M(φ) = Σ share_k M_k(φ − φ_k)        M_k = R T (R 303) of cylinder k, whose dead centre follows by φ_k (R p. 612);
+    M(φ) = Σ share_k M_k(φ − δ_k)        M_k = R T (R 303) of cylinder k, whose crank angle lags by δ_k (R p. 612);
                                          share: factor for the efficiency
     E(φ) = ∫₀^φ (M − M_load) dφ          excess work; ΔE = E_max − E_min (R p. 612)
     J(φ) = Σ m x′² + …                   reduced moment of inertia of the moving masses
@@ -57,8 +57,8 @@ def torque_of_inertia(state: State) -> Any:
 
 
 def position(forces: CylinderForces) -> Number:
-    """Return the degrees by which a cylinder follows cylinder 1, without whole cycles, which would cost digits."""
-    return np.fmod(forces.drive.cylinder.crank_position, forces.drive.cycle)
+    """Return the degrees by which a crank lags crank 1, without whole cycles, which would cost digits."""
+    return np.fmod(forces.drive.lag, forces.drive.cycle)
 
 
 def moves(group: Sequence[CylinderForces]) -> bool:

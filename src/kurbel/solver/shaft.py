@@ -37,6 +37,7 @@ from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.crankshaft import Crankshaft
+from kurbel.machine.cylinder import crank_lag, pin_lag
 from kurbel.numerics.arithmetic import magnitude, some, where
 from kurbel.solver.vector import Force
 
@@ -296,11 +297,11 @@ def shaft_obstacle(machine: Machine) -> str:
 def throws_of(cylinders: Sequence[Cylinder]) -> list[Throw]:
     """Return the throws of these cylinders, not yet on their bearings, as the cylinders follow one another.
 
-    Cylinders share a pin where their throws have one angle, γ − β, and one place, and their stroke lines differ.
+    Cylinders share a pin where their throws have one angle, γ − δ, and one place, and their stroke lines differ.
     """
     found: list[Throw] = []
     for number, one in enumerate(cylinders):
-        angle = _remainder(one.bank_angle - one.crank_position)
+        angle = _remainder(-pin_lag(one, cylinders[0]))
         place = 0.0 if one.axial_position is None else one.axial_position
         for index, throw in enumerate(found):
             same = (magnitude(_remainder(throw.angle - angle)) <= _ALIKE) & (
@@ -351,8 +352,8 @@ class CylinderThrow(NamedTuple):
     """The throw of one cylinder with its moving masses in kg.
 
     number: of the cylinder, from 0; place: along the shaft in m; bank: γ from the stroke line of cylinder 1 in degrees;
-    arm: the crank in m, complex, in its direction at φ = 0; rotating: mass that turns with the pin; unbalanced: that of
-    the crank among it, without the rod; mass: reciprocating.
+    lag: δ of its crank angle in degrees; arm: the crank in m, complex, in its direction at φ = 0; rotating: mass that
+    turns with the pin; unbalanced: that of the crank among it, without the rod; mass: reciprocating.
     """
 
     number: int
@@ -360,6 +361,7 @@ class CylinderThrow(NamedTuple):
     cylinder: Cylinder
     place: Any
     bank: Number
+    lag: Number
     arm: Any
     rotating: Number
     unbalanced: Number
@@ -380,10 +382,10 @@ def throws_with_masses(machine: Machine, first: Number = 0.0) -> list[CylinderTh
             if masses
             else (0.0,) * 3
         )
-        arm = one.mechanism.crank * unit_vector(bank - one.crank_position)
-        found.append(
-            CylinderThrow(number, one.name, one, one.axial_position, bank, arm, *of_masses)
-        )
+        lag = crank_lag(one, machine.cylinders[0])
+        arm = one.mechanism.crank * unit_vector(bank - lag)
+        throw = CylinderThrow(number, one.name, one, one.axial_position, bank, lag, arm, *of_masses)
+        found.append(throw)
     return found
 
 
@@ -429,9 +431,7 @@ def counterweights_of(machine: Machine, throws: Sequence[CylinderThrow]) -> Iter
             # an angle counts from the throw; with several throws a weight without a place belongs to none of them
             otherwise = owners[0].place if len(owners) == 1 else None
             for one in weights:
-                product = one.product * unit_vector(
-                    owners[0].bank - owners[0].cylinder.crank_position + one.angle
-                )
+                product = one.product * unit_vector(owners[0].bank - owners[0].lag + one.angle)
                 place = otherwise if one.axial_position is None else one.axial_position
                 yield Weight(product, 1, place, owners[0].number)
 

@@ -1,33 +1,26 @@
-"""From results and their declared quantities to the tables of a report, and the crank angles of its rows."""
+"""From results and their declared quantities to the report of a command."""
 
-import math
 import re
-from array import array
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Number
+from kurbel.arrays import Array
 from kurbel.declared.forms.figures import MACHINE
-from kurbel.declared.numerals import NUMBER, RATIO, keyboard_text, parse_ratio
-from kurbel.declared.reading import LONGEST_VALUE, text_in_one_line
-from kurbel.declared.unit_systems import convert, show, shown_unit, units_of
-from kurbel.declared.units import kind_example, unit_factor
-from kurbel.errors import NoSolutionError, Nowhere, UnitError, UsageError
+from kurbel.declared.reading import text_in_one_line
+from kurbel.errors import NoSolutionError, Nowhere, UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
-from kurbel.numerics.extreme import Extreme, number_of, size_of
+from kurbel.numerics.extreme import Extreme
 from kurbel.quantities import every_quantity
-from kurbel.quantity import Lists, Quantity, ambiguity, called, in_sentences
+from kurbel.quantity import Lists, Quantity, called, in_sentences
 from kurbel.solver.case import Case
-from kurbel.solver.cycle import Where
 from kurbel.solver.figures import AtAngles, Results
-from kurbel.solver.forces import CylinderForces
 from kurbel.tables.named_values import Choice, choices_in
+from kurbel.tables.shown import EVERYWHERE, ROUNDING, Places, shown_columns, shown_key_values
 from kurbel.tables.tables import (
     BEFORE,
     Column,
@@ -40,15 +33,8 @@ from kurbel.tables.tables import (
     Report,
     equal_loads,
     grouped,
-    stepped,
 )
 
-_AT_ONCE = 8192
-"""Crank angles computed at once, so that a long table needs little memory apart from its own numbers."""
-_EVERYWHERE = np.arange(0.0, 720.0, 7.5)
-"""Crank angles in degrees over the longest cycle, at which the size of a curve is estimated."""
-_ROUNDING = 1e-12
-"""Values below this, relative to the largest of their curve, are rounding errors of a zero."""
 _UNCOMPARED = (
     "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset and of a "
     "piston with pressures; this machine has neither."
@@ -63,10 +49,10 @@ class Subject(NamedTuple):
 
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
     state with the columns, None without columns; of: the cylinder that a pin belongs to; pistons: those of a cylinder
-    whose rod has several; whole: it is the whole machine; idle: why its table would be one of no
-    results, so that people get a sentence instead. The rest is computed only for a report, and once:
-    left_out, warnings, tables. part: its name in columns where `name` is a number that may mean another
-    part of another machine; where: what it is next to, which tells parts of one number from one another.
+    whose rod has several; whole: it is the whole machine; idle: why its table would have no results, so that people
+    get a sentence instead. The rest is computed only for a report, and once: left_out, warnings, tables. part: its name
+    in columns where `name` is a number that may mean another part of another machine; where: what it is next to, which
+    distinguishes parts of one number.
     """
 
     name: str
@@ -74,7 +60,7 @@ class Subject(NamedTuple):
     at: Callable[[Array], AtAngles] | None = None
     left_out: Iterable[LeftOut] = ()
     warnings: Iterable[str] = ()
-    tables: "Iterable[Places]" = ()
+    tables: Iterable[Places] = ()
     of: str = ""
     pistons: "Sequence[Subject]" = ()
     whole: bool = False
@@ -90,7 +76,10 @@ class Subject(NamedTuple):
     @property
     def lists(self) -> Lists:
         """The quantities that it can have."""
-        return self.results.lists if self.results else every_quantity()
+        if self.results:
+            return self.results.lists
+        # columns alone are those of a shaft segment
+        return every_quantity() if self.at else Lists((), ())
 
     def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""
@@ -116,15 +105,13 @@ class Subject(NamedTuple):
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, object]]:
         """Yield its key values of a command in SI, without those that are printed only on request."""
-        for quantity, of, unless, _ in (
-            self.results.rows.key_values.values() if self.results else ()
-        ):
-            printed = command in quantity.commands and command not in quantity.on_request
-            if (
-                printed
-                and not (unless and unless(self.results))
-                and (value := of(self.results)) is not None
-            ):
+        if not self.results:
+            return
+        for quantity, of, unless, _ in self.results.rows.key_values.values():
+            is_printed = command in quantity.commands and command not in quantity.on_request
+            is_idle = bool(unless and unless(self.results)) if is_printed else True
+            value = None if is_idle else of(self.results)
+            if value is not None:
                 yield quantity, value
 
     def is_minor(self, id: str, compare: bool) -> bool:
@@ -146,9 +133,11 @@ def equal_parts(subjects: Sequence[Subject], command: str) -> list[list[Subject]
     if len(having) < 2:
         return [having]
 
-    def load(one: Subject) -> Hashable:
-        name, of = (one.name, one.of) if command == "bearings" else ("", "")
-        return equal_loads(name, of, shown_key_values(one.key_values(command), "si"))
+    def load(subject: Subject) -> Hashable:
+        key_values = shown_key_values(subject.key_values(command), "si")
+        if command == "bearings":
+            return equal_loads(subject.name, subject.of, key_values)
+        return equal_loads("", "", key_values)
 
     return grouped(having, load)
 
@@ -182,6 +171,15 @@ _PARTS = {"bearings": "bearings", "stress": "throws"}
 """What the parts of a report are called where they are no cylinders."""
 
 
+class _Rows(NamedTuple):
+    """What a subject has over the crank angle and at its places; why: why it has no row, if it has none."""
+
+    subject: Subject
+    tables: tuple[PlaceTable, ...]
+    columns: tuple[Column, ...]
+    why: str
+
+
 @np.errstate(all="ignore")
 def report_on(
     frame: Frame,
@@ -199,54 +197,80 @@ def report_on(
         raise UsageError(f"{machine.name} has no cylinder; kurbel {frame.command} needs one")
     if frame.names:
         return _report_on_names(frame, machine, title, subjects)
-    having = list[tuple[Subject, tuple[PlaceTable, ...], tuple[Column, ...], str]]()
-    for subject in subjects:
-        tables = tuple(table.shown(frame.system) for table in subject.tables)
-        if subject.whole or subject.at or tables or any(subject.key_values(frame.command)):
-            having.append((subject, tables, *_columns(frame, subject)))
-    printed = {column.id for _, _, columns, _ in having for column in columns}
-    nowhere = [why for *_, why in having if why]
-    for name in frame.columns or ():
-        if name not in printed:
-            raise UsageError(
-                f"--columns: {_absent(name, frame.command, [one for one, *_ in having])}"
-            )
-    if nowhere and not printed:
-        raise NoSolutionError(nowhere[0])
 
-    with_values = frame.prose or not (printed or any(tables for _, tables, *_ in having))
-    parts = [
-        Part(
-            one.name,
-            columns,
-            tuple(_key_values(one, frame)) if with_values else (),
-            tuple(one.left_out) if frame.prose else (),
-            tuple(one.warnings) if frame.prose else (),
-            tables,
-            why,
-            one.of,
-        )
-        for one, tables, columns, why in having
-    ]
-    # the balance has its own note on what it cannot compare
-    uncompared = (
-        frame.compare
-        and frame.command != "balance"
-        and not any(id.endswith("_book") for id in printed)
-    )
-    idle = [] if frame.columns else [f"{one.name}: {one.idle}" for one, *_ in having if one.idle]
-    added = ([_UNCOMPARED] if uncompared else []) + [f"{why}." for why in nowhere] + idle
+    with_rows = _with_rows(frame, subjects)
+    ids = {column.id for rows in with_rows for column in rows.columns}
+    _check_columns(frame, with_rows, ids)
+
+    # a CSV table has key values only where it has nothing else
+    has_tables = bool(ids) or any(rows.tables for rows in with_rows)
+    with_values = frame.prose or not has_tables
+    parts = [_part(rows, frame, with_values) for rows in with_rows]
+    whole = parts.pop() if with_rows and with_rows[-1].subject.whole else None
     return Report(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
         _PARTS.get(frame.command, "cylinders"),
-        whole=parts.pop() if having and having[-1][0].whole else None,
+        whole=whole,
         parts=tuple(parts),
-        notes=(*notes, *added) if frame.prose else (),
+        notes=(*notes, *_added_notes(frame, with_rows, ids)) if frame.prose else (),
         provenance=partial(provenance, machine) if frame.prose else None,
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )
+
+
+def _with_rows(frame: Frame, subjects: Iterable[Subject]) -> list[_Rows]:
+    """Return the subjects that have something to print."""
+    with_rows = []
+    for subject in subjects:
+        tables = tuple(table.shown(frame.system) for table in subject.tables)
+        has_rows = subject.whole or bool(subject.at) or bool(tables)
+        if has_rows or any(subject.key_values(frame.command)):
+            columns, why = _columns(frame, subject)
+            with_rows.append(_Rows(subject, tables, columns, why))
+    return with_rows
+
+
+def _check_columns(frame: Frame, with_rows: Sequence[_Rows], ids: set[str]) -> None:
+    """Refuse a requested column that no subject has, and a condition that holds nowhere; ids: of all columns."""
+    for name in frame.columns or ():
+        if name not in ids:
+            absent = _absent(name, frame.command, [rows.subject for rows in with_rows])
+            raise UsageError(f"--columns: {absent}")
+    if not ids:
+        for rows in with_rows:
+            if rows.why:
+                raise NoSolutionError(rows.why)
+
+
+def _part(rows: _Rows, frame: Frame, with_values: bool) -> Part:
+    """Return the part of the report that is about one subject."""
+    subject = rows.subject
+    return Part(
+        subject.name,
+        rows.columns,
+        tuple(_key_values(subject, frame)) if with_values else (),
+        tuple(subject.left_out) if frame.prose else (),
+        tuple(subject.warnings) if frame.prose else (),
+        rows.tables,
+        rows.why,
+        subject.of,
+    )
+
+
+def _added_notes(frame: Frame, with_rows: Sequence[_Rows], ids: set[str]) -> Iterator[str]:
+    """Yield what is said below the tables of any command: what was not compared, found, or computed."""
+    has_approximations = any(id.endswith("_book") for id in ids)
+    # the balance has its own note on what it cannot compare
+    if frame.compare and frame.command != "balance" and not has_approximations:
+        yield _UNCOMPARED
+    for rows in with_rows:
+        if rows.why:
+            yield f"{rows.why}."
+    for rows in with_rows:
+        if rows.subject.idle and not frame.columns:
+            yield f"{rows.subject.name}: {rows.subject.idle}"
 
 
 def _report_on_names(
@@ -258,18 +282,19 @@ def _report_on_names(
     have.
     """
     # pistons of a rod are meant by their names alone
-    owners = [*subjects, *(piston for subject in subjects for piston in subject.pistons)]
-    choices = choices_in(frame.names, frame.command, owners)
+    pistons = [piston for subject in subjects for piston in subject.pistons]
+    choices = choices_in(frame.names, frame.command, [*subjects, *pistons])
     scopes = {choice.scope for choice in choices}
-    parts, whole, given = list[Part](), None, set[Choice]()
-    for subject in owners:
-        if subject not in subjects and subject.name not in scopes:
-            continue
+    named_pistons = [piston for piston in pistons if piston.name in scopes]
+
+    parts, whole = list[Part](), None
+    printed = set[Choice]()
+    for subject in (*subjects, *named_pistons):
         chosen = list(subject.named(choices))
         if not chosen:
             continue
         ids = {quantity.id for quantity, _ in chosen}
-        given |= {choice for choice in choices if choice.id in ids and choice.is_of(subject)}
+        printed.update(choice for choice in choices if choice.id in ids and choice.is_of(subject))
         key_values = tuple(_with_sides(subject, shown_key_values(chosen, frame.system), chosen))
         part = Part(subject.name, (), key_values, (), tuple(subject.warnings), of=subject.of)
         if subject.whole:
@@ -278,7 +303,7 @@ def _report_on_names(
             parts.append(part)
 
     for choice in choices:
-        if choice not in given:
+        if choice not in printed:
             raise UsageError(f"--key-values: {_lacking(choice, frame.command)}")
     return Report(
         f"{machine.name}. {title}",
@@ -328,18 +353,23 @@ def before_jumps(subject: Subject, values: Iterable[tuple[Quantity, object]]) ->
     values: key values of the subject in SI.
     """
     extremes = {quantity.id: value for quantity, value in values if isinstance(value, Extreme)}
+    if not (subject.at and extremes):
+        return set()
     angles = np.array([extreme.degrees for extreme in extremes.values()], dtype=float)
+    state = subject.at(angles)
     before = set[str]()
-    if subject.at and len(angles):
-        state = subject.at(angles)
-        for number, (id, extreme) in enumerate(extremes.items()):
-            after = [values[number] for values in _columns_of(id, state)]
-            size = abs(extreme.value)
-            # of a largest magnitude the sign is not known
-            same = [abs(abs(value) - size) <= _ANOTHER * max(abs(value), size) for value in after]
-            if after and not any(same):
-                before.add(id)
+    for row, (id, extreme) in enumerate(extremes.items()):
+        columns = list(_columns_of(id, state))
+        is_there = any(_is_extreme(column[row], extreme) for column in columns)
+        if columns and not is_there:
+            before.add(id)
     return before
+
+
+def _is_extreme(value: float, extreme: Extreme) -> bool:
+    """Return whether a value of a column is this extreme; the sign of a largest magnitude is not known."""
+    size = abs(extreme.value)
+    return bool(abs(abs(value) - size) <= _ANOTHER * max(abs(value), size))
 
 
 def _columns_of(id: str, state: AtAngles) -> Iterator[Array]:
@@ -371,12 +401,11 @@ class Functions(NamedTuple):
 
         Raises UsageError without such results, NoSolutionError if the machine jams, stalls, or vibrates without limit.
         """
-        found = (
-            self.own(case, frame, **options)
-            if self.own
-            else (self.subjects(case), self.notes(case))
-        )
-        return report_on(frame, case.machine, self.title, *found)
+        if self.own:
+            subjects, notes = self.own(case, frame, **options)
+        else:
+            subjects, notes = self.subjects(case), self.notes(case)
+        return report_on(frame, case.machine, self.title, subjects, notes)
 
 
 def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
@@ -387,33 +416,43 @@ def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
         angles = frame.angles(subject) if callable(frame.angles) else frame.angles
     except Nowhere as error:
         return (), str(error)
-    known = subject.lists.columns(frame.command)
-    added = [
-        one
-        for one in known.values()
-        if one.id == frame.over or (frame.compare and one.id.endswith("_book"))
-    ]
+
+    declared = subject.lists.columns(frame.command)
+    added = [quantity for quantity in declared.values() if _is_added(quantity, frame)]
     if frame.columns:
-        chosen = [*(known[name] for name in frame.columns if name in known), *added]
+        chosen = [declared[name] for name in frame.columns if name in declared] + added
     else:
-        usual = (
-            one for one in known.values() if frame.command not in one.on_request or one in added
-        )
-        # what adds nothing to forces may be what motion is about
-        elsewhere = subject.results and subject.results.command != frame.command
-        chosen = [one for one in usual if elsewhere or subject.is_printed(one)]
-    columns = shown_columns(
-        subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system
-    )
+        chosen = _usual_columns(frame, subject, added)
+    quantities = tuple(dict.fromkeys((declared["phi"], *chosen)))
+    columns = shown_columns(subject.at, quantities, angles, frame.system)
     if frame.columns:
         return columns, ""
-    minor = (
-        set(known) if subject.idle else _minor_columns(subject, [column.id for column in columns])
-    )
-    wanted = {quantity.id for quantity in added}
-    return tuple(
-        one._replace(minor=one.id in minor and one.id not in wanted) for one in columns
-    ), ""
+
+    # what was asked for is shown to people, too
+    minor = set(declared)
+    if not subject.idle:
+        minor = _minor_columns(subject, [column.id for column in columns])
+    minor -= {quantity.id for quantity in added}
+    return tuple(column._replace(minor=column.id in minor) for column in columns), ""
+
+
+def _is_added(quantity: Quantity, frame: Frame) -> bool:
+    """Return whether a column is shown in any case: that of the even steps, and approximations to compare with."""
+    return quantity.id == frame.over or (frame.compare and quantity.id.endswith("_book"))
+
+
+def _usual_columns(frame: Frame, subject: Subject, added: Sequence[Quantity]) -> list[Quantity]:
+    """Return the columns of a command where none are named."""
+    # what adds nothing to forces may be what motion is about
+    results = subject.results
+    is_elsewhere = results is not None and results.command != frame.command
+    usual = []
+    for quantity in subject.lists.columns(frame.command).values():
+        if frame.command in quantity.on_request and quantity not in added:
+            continue
+        if is_elsewhere or subject.is_printed(quantity):
+            usual.append(quantity)
+    return usual
 
 
 def _minor_columns(subject: Subject, ids: Iterable[str]) -> set[str]:
@@ -422,7 +461,8 @@ def _minor_columns(subject: Subject, ids: Iterable[str]) -> set[str]:
     Of equal forces the first one stays, but the piston force in any case.
     """
     assert subject.at is not None
-    state, minor = subject.at(_EVERYWHERE), set[str]()
+    state = subject.at(EVERYWHERE)
+    minor = set[str]()
     forces = dict[str, Array]()
     for id in ids:
         row = state.rows[id]
@@ -434,7 +474,7 @@ def _minor_columns(subject: Subject, ids: Iterable[str]) -> set[str]:
         if not np.any(values):
             minor.add(id)
         elif row.quantity.kind == "force":
-            forces[id] = np.broadcast_to(values, _EVERYWHERE.shape)
+            forces[id] = np.broadcast_to(values, EVERYWHERE.shape)
     if "P" in forces:
         forces = {"P": forces["P"], **forces}
     different = list[Array]()
@@ -448,39 +488,50 @@ def _minor_columns(subject: Subject, ids: Iterable[str]) -> set[str]:
 
 def _are_equal(values: Array, others: Array) -> bool:
     """Return whether two columns (n,) are equal but for rounding."""
-    return bool(np.abs(values - others).max() <= _ROUNDING * np.abs(values).max())
+    return bool(np.abs(values - others).max() <= ROUNDING * np.abs(values).max())
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     """Return the message for a column that does not exist, listing those that do."""
-    known, key_values = every_quantity().columns(command), every_quantity().key_values(command)
-    states = [
-        (subject.lists.columns(command), subject.at(np.zeros(1)))
-        for subject in subjects
-        if subject.at
-    ]
-    there = [
-        one
-        for id, one in known.items()
-        if any(id in own and state[id] is not None for own, state in states)
-    ]
+    declared = every_quantity().columns(command)
+    present = _present_columns(declared.values(), command, subjects)
     listed = ", ".join(
-        one.id if one.id == one.symbol else f"{one.id} ({one.symbol})" for one in there
+        column.id if column.id == column.symbol else f"{column.id} ({column.symbol})"
+        for column in present
     )
-    if name in known:
-        return f"'{name}' is left out for this machine" + (
-            f", which has {listed}" if listed else ""
-        )
-    if found := called(name, key_values.values()):
-        return f"'{name}' is a key value and no column; --key-values {found[0]} prints it"
-    words = tuple(word for one in (*there, *known.values()) for word in (one.id, one.symbol))
-    near = in_sentences(name, there) or did_you_mean(name, words)
-    return f"'{text_in_one_line(name)}' is no column of kurbel {command}{near} (this machine has {listed or 'none'})"
+    if name in declared:
+        others = f", which has {listed}" if listed else ""
+        return f"'{name}' is left out for this machine{others}"
+    key_values = called(name, every_quantity().key_values(command).values())
+    if key_values:
+        return f"'{name}' is a key value and no column; --key-values {key_values[0]} prints it"
+    words = [
+        word for column in (*present, *declared.values()) for word in (column.id, column.symbol)
+    ]
+    near = in_sentences(name, present) or did_you_mean(name, tuple(words))
+    return (
+        f"'{text_in_one_line(name)}' is no column of kurbel {command}{near} "
+        f"(this machine has {listed or 'none'})"
+    )
+
+
+def _present_columns(
+    declared: Iterable[Quantity], command: str, subjects: Iterable[Subject]
+) -> list[Quantity]:
+    """Return the columns that at least one of these subjects has."""
+    present = set[str]()
+    for subject in subjects:
+        if subject.at:
+            state = subject.at(np.zeros(1))
+            columns = subject.lists.columns(command)
+            present.update(id for id in columns if state[id] is not None)
+    return [quantity for quantity in declared if quantity.id in present]
 
 
 def provenance(machine: Machine) -> Provenance:
     """Return what the results of a machine depend on: files with their bytes, overridden values, versions."""
-    inputs, origin = [], machine.origin
+    inputs = []
+    origin = machine.origin
     if origin:  # standard input cannot be read again
         inputs.append(InputFile(origin.name, origin.content))
     for name in machine.trace_files:
@@ -489,352 +540,3 @@ def provenance(machine: Machine) -> Provenance:
             content = file.read()
         inputs.append(InputFile(name, content))
     return Provenance(tuple(inputs), origin.overrides if origin else (), {"numpy": np.__version__})
-
-
-# from values in SI to columns and key values in the unit in which they are shown
-
-
-def too_large(quantity: Quantity) -> UsageError:
-    """Return the error for a quantity that overflows."""
-    return UsageError(
-        f"{quantity.id} is too large to compute with: check the numbers and units of the machine file"
-    )
-
-
-def shown_columns(
-    at: Callable[[Array], AtAngles],
-    quantities: Sequence[Quantity],
-    angles: Sequence[float],
-    system: str,
-) -> tuple[Column, ...]:
-    """Return those of these columns that the machine has, at crank angles (n,) in degrees; at: see `Subject`.
-
-    Raises UsageError if one is not finite.
-    """
-    found: dict[Quantity, list[Array]] = {}
-    sizes: dict[Quantity, float] = {}
-    for start in range(0, len(angles), _AT_ONCE):
-        degrees = np.append(angles[start : start + _AT_ONCE], _EVERYWHERE)
-        state = at(degrees)
-        for quantity in quantities:
-            values = degrees if quantity.id == "phi" else state[quantity.id]
-            if values is not None:
-                rows, everywhere = np.split(np.asarray(values, dtype=float), [-len(_EVERYWHERE)])
-                found.setdefault(quantity, []).append(rows)
-                sizes[quantity] = 0.0 if quantity.id == "phi" else float(np.abs(everywhere).max())
-    return tuple(
-        shown_column(one, np.concatenate(found.pop(one)), system, sizes[one]) for one in [*found]
-    )
-
-
-def shown_column(
-    quantity: Quantity,
-    values: Sequence[float | None] | Array,
-    system: str,
-    size: float = 0.0,
-    largest: float = 0.0,
-) -> Column:
-    """Return the column of a quantity; values: (n,) in SI, None for no value; size: the largest value of its curve.
-
-    largest: of all columns that are to have the same unit, in SI. Raises UsageError if a value is not finite.
-    """
-    numbers, kind = np.array(values, dtype=float), quantity.kind
-    lacking = (
-        []
-        if isinstance(values, np.ndarray)
-        else [k for k, value in enumerate(values) if value is None]
-    )
-    numbers[lacking] = 0.0
-    if not (np.isfinite(numbers).all() and np.isfinite(size)):
-        raise too_large(quantity)
-    own = max(numbers.max(initial=0.0), -numbers.min(initial=0.0))
-    size = size if own <= _ROUNDING * size else 0.0
-    unit = shown_unit(kind, system, max(size or own, largest))
-    given: array[float] | list[float | None] = array(
-        "d", (convert(numbers, kind, unit) + 0.0).tobytes()
-    )
-    if lacking:
-        given = [None if k in lacking else value for k, value in enumerate(given)]
-    symbols = quantity.symbol, quantity.ascii_symbol
-    return Column(
-        quantity.id,
-        *symbols,
-        quantity.marked(unit),
-        given,
-        quantity.text,
-        size=float(convert(size, kind, unit)),
-    )
-
-
-PlaceRow = tuple[tuple[str, ...], Mapping[str, float | None]]
-"""A row of a table of places: its names, and its values in SI by the ids of their quantities."""
-
-
-class Places(NamedTuple):
-    """A table of places with its values in SI; see `PlaceTable`.
-
-    declared: its quantities by id; one that no row has is left out. headed: the names of the rows are texts for people;
-    otherwise programs have them without spaces and punctuation. alone: the digits to which every value is rounded by
-    itself; values of one kind then have one unit.
-    """
-
-    id: str
-    title: str
-    heads: tuple[str, ...]
-    declared: Mapping[str, Quantity]
-    rows: Sequence[PlaceRow]
-    headed: bool = False
-    alone: int = 0
-    in_note: bool = False
-
-    def shown(self, system: str) -> PlaceTable:
-        """Return the table in units; orders and modes have as many decimals as they need, distances three."""
-        found = {
-            quantity: [values.get(id) for _, values in self.rows]
-            for id, quantity in self.declared.items()
-            if any(id in values for _, values in self.rows)
-        }
-        largest: dict[str, float] = {}
-        for quantity, each in found.items() if self.alone else ():
-            largest[quantity.kind] = max(
-                largest.get(quantity.kind, 0.0), *(abs(value or 0.0) for value in each)
-            )
-
-        columns = []
-        for quantity, each in found.items():
-            decimals = 3 if quantity.id == "distance" else None
-            if quantity.id in ("order", "mode"):
-                needed = (
-                    0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value
-                )
-                decimals = max(needed, default=0)
-            column = shown_column(quantity, each, system, largest=largest.get(quantity.kind, 0.0))
-            columns.append(
-                column._replace(
-                    decimals=decimals, alone=0 if quantity.kind == "angle" else self.alone
-                )
-            )
-        names = [names for names, _ in self.rows]
-        words: dict[str, str] = {}
-        if not self.headed:
-            words = {_as_id(name): name for row in names for name in row}
-            names = [tuple(map(_as_id, row)) for row in names]
-        return PlaceTable(
-            self.id,
-            self.title,
-            self.heads,
-            tuple(names),
-            tuple(columns),
-            self.headed,
-            self.in_note,
-            words,
-        )
-
-
-_BETWEEN = re.compile(r"[\s,:;=–]+")
-"""What parts the words of the name of a row."""
-
-
-def _as_id(name: str) -> str:
-    """Return the name of a row as programs have it.
-
-    >>> _as_id("shaft n = 1, against the crank: A")
-    'shaft_n_1_against_the_crank_A'
-    """
-    return _BETWEEN.sub("_", name)
-
-
-def shown_key_values(found: Iterable[tuple[Quantity, object]], system: str) -> list[KeyValue]:
-    """Return key values in the units of the system; found: see `Subject.key_values`.
-
-    The maximum and the minimum of a column have the same unit. Raises UsageError if one is not finite.
-    """
-    given = tuple(found)
-    units = units_of(
-        [(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system
-    )
-    shown_values = []
-    for (quantity, value), unit in zip(given, units):
-        raw, at = number_of(value), value.degrees if isinstance(value, Extreme) else None
-        each = raw if isinstance(raw, tuple) else (raw,)
-        if not np.isfinite(each).all():
-            raise too_large(quantity)
-        numbers = tuple(float(convert(one, quantity.kind, unit)) + 0.0 for one in each)
-        number = (
-            numbers if isinstance(raw, tuple) else raw if isinstance(raw, int) else numbers[0]
-        )  # a count
-        noise = any(map(quantity.is_noise, numbers))
-        symbols = quantity.symbol, quantity.ascii_symbol
-        shown_values.append(
-            KeyValue(
-                quantity.id,
-                *symbols,
-                quantity.marked(unit),
-                number,
-                quantity.text,
-                at,
-                noise,
-                quantity.heading,
-            ),
-        )
-    return shown_values
-
-
-# the crank angles of the rows of a table that are given by a condition or by equal steps of the stroke
-
-_SAME = 1e-9
-"""Degrees by which angles differ by rounding only."""
-_OF_SPEED = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
-
-
-def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]:
-    """Return a function that finds the angles, up to `end`, at which x is 0, step, 2 step, … percent of the stroke.
-
-    Both strokes count. Raises UsageError for a step that is not positive, and for an output without a stroke.
-    """
-    fractions = np.asarray(stepped(step, 100.0)) / 100
-
-    def angles(subject: Subject) -> Sequence[float]:
-        assert isinstance(subject.results, CylinderForces)
-        mechanism = subject.results.mechanism
-        if mechanism.turns:
-            raise UsageError(
-                f"--over x: the output of a {mechanism.name} turns on and has no stroke"
-            )
-        x = mechanism.stroke * fractions
-        out = np.asarray(mechanism.crank_angles_at(x, True))
-        back = np.asarray(mechanism.crank_angles_at(x[::-1], False))
-        turn = np.concatenate((out, back[1:]))
-        # the end of a turn is the beginning of the next one
-        every = [turn[start > 0 :] + start for start in np.arange(0.0, end, 360.0).tolist()]
-        return np.concatenate(every).tolist()
-
-    return angles
-
-
-@runtime_checkable
-class Searchable(Protocol):
-    """Results that `--where` searches; omega: of the crank in rad/s, None where no speed is given."""
-
-    omega: Number | None
-
-    def angles_where(self, column: str, value: float) -> Where | None:
-        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
-
-
-def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Sequence[float]]:
-    """Return a function that finds the angles, up to `end`, at which a condition such as `b = 1/6 b_max` holds.
-
-    They are exact except for rounding; the function raises Nowhere if there are none. Raises UsageError for a text that
-    is no condition.
-    """
-    name, equals, value = (part.strip() for part in keyboard_text(text).partition("="))
-    number = re.match(RATIO, value) or NUMBER.match(value)
-    of = value[number.end() if number else 0 :].strip()
-    if len(text) > LONGEST_VALUE or not (text.isprintable() and name and equals and (number or of)):
-        raise UsageError(
-            f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{text_in_one_line(text)}'"
-        )
-    try:
-        factor = parse_ratio(number.group()) if number else None
-    except UnitError as error:
-        raise UsageError(f"--where: {error}") from None
-
-    def angles(subject: Subject) -> Sequence[float]:
-        own = subject.lists.columns(command)
-        ids = called(name, own.values())
-        if not ids:
-            every = every_quantity().columns(command)
-            ids = called(name, every.values())
-        if not ids:
-            near = did_you_mean(name, tuple(every))
-            raise UsageError(f"--where: '{name}' is no column{near} (known: {', '.join(every)})")
-        if wrong := ambiguity(name, ids):
-            raise UsageError(f"--where: {wrong}")
-        column = own.get(ids[0])  # None for one that only other machines have
-        is_fraction = column is not None and not _has_unit(of, column)
-        searched = _with_any_speed(subject, column) if column and is_fraction else subject
-        wanted = _value(searched, command, column, factor, of, text) if column else 0.0
-        results = searched.results
-        assert isinstance(results, Searchable)
-        found = column and results.angles_where(column.id, wanted)
-        if column is None or found is None:
-            why = "; kurbel check shows why"
-            if column and column.kind in _OF_SPEED and results.omega is None:
-                fraction = "a fraction of a key value, as in 'b = 1/6 b_max', needs none"
-                why = f": no speed is given; add one by --set speed='60 rpm' ({fraction})"
-            raise UsageError(f"--where: '{name}' is left out for this machine{why}")
-        if not found.angles:
-            low, high = (show(one, column.kind) for one in found.span)
-            raise Nowhere(
-                f"{subject.name}: {column.id} is nowhere {show(wanted, column.kind)}: it goes from {low} to {high}"
-            )
-        # a table over one turn has the rows of both turns of a cycle
-        turned = np.sort(np.mod(found.angles, end))
-        return turned[np.diff(turned, prepend=-1.0) > _SAME].tolist()
-
-    return angles
-
-
-def _has_unit(of: str, column: Quantity) -> bool:
-    """Return whether this is a unit of the column, not a key value."""
-    try:
-        unit_factor(of, column.kind)
-    except UnitError:
-        return False
-    return bool(of)
-
-
-def _with_any_speed(subject: Subject, column: Quantity) -> Subject:
-    """Return a cylinder without a speed as it moves at any speed, if the column needs one; else the subject itself.
-
-    At uniform rotation a velocity is a fraction of its largest at the same angles whatever the speed.
-    """
-    forces = subject.results
-    needs_speed = (
-        column.kind in _OF_SPEED and isinstance(forces, CylinderForces) and forces.omega is None
-    )
-    if not needs_speed:
-        return subject
-    assert isinstance(forces, CylinderForces)
-    machine = replace(forces.drive.machine, speed=_ANY_SPEED)
-    return subject._replace(results=CylinderForces(machine, forces.drive.cylinder))
-
-
-_ANY_SPEED = 1 / (2 * math.pi)
-"""Revolutions per second: 1 rad/s."""
-
-
-def _value(
-    subject: Subject, command: str, column: Quantity, factor: float | None, of: str, text: str
-) -> float:
-    """Return the value in SI: a number with a unit of the column's kind, or a fraction of a key value."""
-    if not of:
-        if factor and column.kind != "ratio":
-            raise UsageError(
-                f"--where: {text} has no unit; write for instance {kind_example(column.kind)}"
-            )
-        return factor or 0.0
-    try:
-        up, down = unit_factor(of, column.kind)
-    except UnitError as error:
-        no_unit = error
-    else:
-        if factor is None:
-            raise UsageError(
-                f"--where: {text_in_one_line(of)} has no number before the unit; write {kind_example(column.kind)}"
-            )
-        return factor * up / down
-    known = {
-        id: one for id, one in subject.lists.key_values(command).items() if one.kind == column.kind
-    }
-    ids = called(of, known.values())
-    value = number_of(subject.answer(known[ids[0]])) if ids else None
-    if not ids:
-        single = ", ".join(id for id, one in known.items() if not one.listed)
-        raise UsageError(
-            f"--where: '{of}' is neither a unit nor a key value of this kind: {no_unit}; key values: {single}"
-        )
-    if not isinstance(value, float):
-        raise UsageError(f"--where: this machine has no {of}")
-    return value * (1.0 if factor is None else factor)

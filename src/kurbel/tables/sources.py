@@ -1,9 +1,13 @@
 """The books that letters before equations and pages refer to, as in (R 290) or (D 7)."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from kurbel.tables.tables import Report
+if TYPE_CHECKING:
+    from kurbel.tables.tables import Report
 
 BOOKS = {
     "R": "Rötscher, Die Maschinenelemente (1927)",
@@ -29,12 +33,17 @@ def legend(texts: Iterable[str]) -> str:
     return "; ".join(f"{letter}: {book}" for letter, book in BOOKS.items() if letter in letters)
 
 
-def legend_of(report: Report) -> str:
-    """Return the legend of a report for people."""
+def texts_of(report: Report) -> list[str]:
+    """Return the texts of a report for people that may refer to a book."""
     texts = [report.title, report.mirrored, *report.head, *report.notes]
     texts += [table.title for table in report.printed_tables]
     for part in report.all_parts:
         texts += [key_value.text for key_value in part.key_values]
         texts += [left_out.why for left_out in part.left_out]
         texts += part.warnings
-    return legend(texts)
+    return texts
+
+
+def legend_of(report: Report) -> str:
+    """Return the legend of a report for people."""
+    return legend(texts_of(report))

@@ -162,16 +162,17 @@ class Report(NamedTuple):
         no row of it is found.
         """
         name = cylinder_meant(name, self.cylinders)
-        found = tuple(part for part in self.parts if name in (part.name, part.of))
-        if not found:
-            there = ", ".join(str(part.name) for part in self.parts) or "the whole machine only"
+        parts = tuple(part for part in self.parts if name in (part.name, part.of))
+        if not parts:
+            listed = ", ".join(str(part.name) for part in self.parts) or "the whole machine only"
             raise UsageError(
-                f"--cylinder: kurbel {self.command} has no results of '{text_in_one_line(name)}'; it has those of {there}"
+                f"--cylinder: kurbel {self.command} has no results of '{text_in_one_line(name)}'; "
+                f"it has those of {listed}"
             )
-        if nowhere := found[0].nowhere:
-            raise NoSolutionError(nowhere)
+        if parts[0].nowhere:
+            raise NoSolutionError(parts[0].nowhere)
         title = f"{self.title}: {name}" if len(self.all_parts) > 1 else self.title
-        return self._replace(title=title, parts=found, whole=None)
+        return self._replace(title=title, parts=parts, whole=None)
 
     def changed(self, change: Callable[[Part], Part]) -> "Report":
         """Return the report with another part in place of each."""
@@ -191,10 +192,11 @@ def cylinder_meant(name: str, cylinders: Sequence[str]) -> str:
     """
     numbered = dict(zip(map(str, range(1, len(cylinders) + 1)), cylinders))
     if numbered.get(name, name) != name and name in cylinders:
-        own = cylinders.index(name) + 1
+        number = cylinders.index(name) + 1
+        other = text_in_one_line(numbered[name])
         raise UsageError(
-            f"--cylinder: '{name}' is the name of cylinder {own} and the number of '{text_in_one_line(numbered[name])}'; "
-            f"write '{own}' or '{text_in_one_line(numbered[name])}'"
+            f"--cylinder: '{name}' is the name of cylinder {number} and the number of '{other}'; "
+            f"write '{number}' or '{other}'"
         )
     return numbered.get(name, name)
 
@@ -226,9 +228,9 @@ def stepped(step: float, end: float, parts: int = 1) -> Sequence[float]:
 def check_rows(angles: float, parts: int) -> None:
     """Raise UsageError for a table that is too long; parts: number of cylinders or L/R with these angles."""
     if angles * parts > MOST_ROWS:
-        each = f" for each of {parts}" if parts > 1 else ""
+        repeated = f" for each of {parts}" if parts > 1 else ""
         raise UsageError(
-            f"{angles:.7g} crank angles{each} give more than {MOST_ROWS} rows; take a larger --step or fewer --angles"
+            f"{angles:.7g} crank angles{repeated} give more than {MOST_ROWS} rows; take a larger --step or fewer --angles"
         )
 
 
@@ -251,14 +253,12 @@ _JUMPS = "− after an angle: just before the jump there."
 
 def notes_for_people(report: Report) -> tuple[str, ...]:
     """Return the notes of a report, with that on extremes before a jump where it has any."""
-    sides = {
-        key_value.side
-        for part in report.all_parts
-        for key_value in part.key_values
-        if not key_value.minor
-    }
-    jumps = (_JUMPS,) if BEFORE in sides else ()
-    return tuple(note for note in (report.mirrored, *report.notes, *jumps) if note)
+    has_jumps = False
+    for part in report.all_parts:
+        shown = (key_value for key_value in part.key_values if not key_value.minor)
+        has_jumps = has_jumps or any(key_value.side == BEFORE for key_value in shown)
+    notes = [report.mirrored, *report.notes, _JUMPS if has_jumps else ""]
+    return tuple(note for note in notes if note)
 
 
 _NUMBERED = re.compile(r"(.*\D)(\d{1,9})$")
@@ -275,24 +275,29 @@ def together(names: Sequence[str]) -> str:
     """
     texts = []
     for group in grouped(names, lambda name: _NUMBERED.sub(r"\1", name)):
-        text = group[0]
-        if len(group) > 1:
-            # runs of numbers from the first to the last
-            numbers = [
-                int(found.group(2)) for name in group if (found := _NUMBERED.fullmatch(name))
-            ]
-            runs = groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
-            spans = [[number for _, number in run] for _, run in runs]
-            listed = (
-                f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span))
-                for span in spans
-            )
-            stem = _NUMBERED.sub(r"\1", text).replace("cylinder ", "cylinders ")
-            text = f"{stem}{', '.join(listed)}"
-        texts.append(text)
+        if len(group) == 1:
+            texts.append(group[0])
+        else:
+            stem = _NUMBERED.sub(r"\1", group[0]).replace("cylinder ", "cylinders ")
+            texts.append(stem + _numbers_in_runs(group))
+
+    # what all texts begin with is said once
     head, of, _ = texts[0].rpartition(" of ")
-    shared = head + of if all(text.startswith(head + of) for text in texts) else ""
-    return shared + ", ".join(text.removeprefix(shared) for text in texts)
+    beginning = head + of
+    if not all(text.startswith(beginning) for text in texts):
+        beginning = ""
+    return beginning + ", ".join(text.removeprefix(beginning) for text in texts)
+
+
+def _numbers_in_runs(names: Iterable[str]) -> str:
+    """Return the numbers at the ends of names, runs of three and more from the first to the last."""
+    matches = (_NUMBERED.fullmatch(name) for name in names)
+    numbers = [int(match.group(2)) for match in matches if match]
+    texts = []
+    for _, run in groupby(enumerate(numbers), lambda pair: pair[1] - pair[0]):
+        span = [number for _, number in run]
+        texts.append(f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span)))
+    return ", ".join(texts)
 
 
 def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
@@ -305,24 +310,23 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
 
 def for_people(report: Report) -> Report:
     """Return the report without what only programs are to read, and with identical parts merged into one."""
+    report = shown_once(report)
+    titles = [table.title for table in report.printed_tables]
 
     def printed(part: Part) -> Part:
         columns = tuple(column for column in part.columns if not column.minor)
         key_values = tuple(key_value for key_value in part.key_values if not key_value.minor)
-        if len(columns) < 2 and len(columns) < len(part.columns):  # crank angles alone
+        are_angles_alone = len(columns) < 2 and len(columns) < len(part.columns)
+        if are_angles_alone:
             columns = ()
         tables = tuple(named(table, part) for table in part.place_tables)
         return part._replace(columns=columns, key_values=key_values, place_tables=tables)
 
     def named(table: PlaceTable, part: Part) -> PlaceTable:
-        return (
-            table._replace(title=f"{table.title}: {part.name}")
-            if titles.count(table.title) > 1
-            else table
-        )
+        if titles.count(table.title) > 1:
+            return table._replace(title=f"{table.title}: {part.name}")
+        return table
 
-    report = shown_once(report)
-    titles = [table.title for table in report.printed_tables]
     return report.changed(printed)
 
 
@@ -334,32 +338,37 @@ def shown_once(report: Report) -> Report:
     """
     if len(report.parts) < 2 or report.group not in ("cylinders", "bearings"):
         return report
-    bearings = report.group == "bearings"
-
-    def content(part: Part) -> Hashable:
-        if bearings:
-            return equal_loads(str(part.name), part.of, part.key_values), part.left_out
-        columns = [part.columns, *(place_table.columns for place_table in part.place_tables)]
-        curves = [(one.id, one.unit, _nine_digits(one.values)) for some in columns for one in some]
-        titles = [(place_table.title, place_table.names) for place_table in part.place_tables]
-        return *curves, _figures(part.key_values), part.left_out, *titles
-
-    groups = grouped(report.parts, content)
+    are_bearings = report.group == "bearings"
+    groups = grouped(report.parts, _loads if are_bearings else _content)
     if len(groups) == len(report.parts):
         return report
+
     parts = []
     for group in groups:
-        warnings = tuple(dict.fromkeys(warning for part in group for warning in part.warnings))
-        parts.append(
-            group[0]._replace(name=together([str(part.name) for part in group]), warnings=warnings)
-        )
-    title = (
-        f"{report.title}: {parts[0].name}"
-        if len(parts) == 1 and report.whole is None
-        else report.title
+        name = together([str(part.name) for part in group])
+        warnings = dict.fromkeys(warning for part in group for warning in part.warnings)
+        parts.append(group[0]._replace(name=name, warnings=tuple(warnings)))
+    is_alone = len(parts) == 1 and report.whole is None
+    return report._replace(
+        parts=tuple(parts),
+        title=f"{report.title}: {parts[0].name}" if is_alone else report.title,
+        notes=(*report.notes, _SHIFTED) if are_bearings else report.notes,
     )
-    notes = (*report.notes, _SHIFTED) if bearings else report.notes
-    return report._replace(parts=tuple(parts), title=title, notes=notes)
+
+
+def _loads(part: Part) -> Hashable:
+    """Return a value that is the same for pins and bearings with equal loads."""
+    return equal_loads(str(part.name), part.of, part.key_values), part.left_out
+
+
+def _content(part: Part) -> Hashable:
+    """Return a value that is the same for cylinders with equal tables and key values."""
+    columns = list(part.columns)
+    for table in part.place_tables:
+        columns += table.columns
+    curves = tuple((column.id, column.unit, _nine_digits(column.values)) for column in columns)
+    titles = tuple((table.title, table.names) for table in part.place_tables)
+    return curves, _figures(part.key_values), part.left_out, titles
 
 
 def _left_out_in_short(parts: Iterable[Part]) -> tuple[str, ...]:
@@ -381,37 +390,22 @@ def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) 
     """
     left_out = _left_out_in_short(report.all_parts)
     report = shown_once(report)
+    if ids and report.whole and report.command == "forces" and len(report.cylinders) == 1:
+        # the totals of the only cylinder are near to its own
+        report = report._replace(whole=None)
     order = {id: number for number, id in enumerate(ids)}
-    of_whole = report.whole is not None and report.whole.place_tables
+    of_whole = report.whole is not None and bool(report.whole.place_tables)
 
     def chosen(part: Part) -> Part:
-        printed = [column for column in part.columns if not column.minor]
-        # of an id that both a column and a key value have the key value is meant
-        values = {key_value.id for key_value in part.key_values}
-        columns = [
-            one for one in printed if not ids or one.id in set(ids) - values or one is printed[0]
-        ]
-        last = len(columns[0].values) - 1 if len(columns) > 1 else 0
-        by = next((k for k in range(1, last) if last % k == 0 and last // k < across), 1)
-        tables = [
-            place_table
-            for place_table in part.place_tables
-            if (place_table.id in ids if ids else not of_whole or part is report.whole)
-        ]
+        tables = part.place_tables
+        if ids:
+            tables = tuple(table for table in tables if table.id in ids)
+        elif of_whole and part is not report.whole:
+            tables = ()
         return part._replace(
-            columns=tuple(one._replace(values=one.values[::by], marked=()) for one in columns)
-            if last
-            else (),
+            columns=_first_columns(part, ids, across),
             key_values=_first_key_values(part.key_values, order),
-            place_tables=tuple(
-                table._replace(
-                    names=table.names[:rows],
-                    columns=tuple(
-                        each._replace(values=each.values[:rows]) for each in table.columns
-                    ),
-                )
-                for table in tables
-            ),
+            place_tables=tuple(_first_rows(table, rows) for table in tables),
             left_out=(),
         )
 
@@ -419,7 +413,33 @@ def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) 
         f"First selection. All columns, angles and key values: kurbel {report.command} FILE --all"
     )
     selected = report.changed(chosen)._replace(notes=left_out, head=(*report.head, way_on))
-    return selected._replace(notes=tuple(filter(None, [" ".join(notes_for_people(selected))])))
+    notes = " ".join(notes_for_people(selected))
+    return selected._replace(notes=(notes,) if notes else ())
+
+
+def _first_columns(part: Part, ids: Sequence[str], across: int) -> tuple[Column, ...]:
+    """Return the angles and the columns with these ids, all without ids, at fewer angles than `across`."""
+    columns = [column for column in part.columns if not column.minor]
+    if ids:
+        # of an id that both a column and a key value have the key value is meant
+        wanted = set(ids) - {key_value.id for key_value in part.key_values}
+        columns = columns[:1] + [column for column in columns[1:] if column.id in wanted]
+    last = len(columns[0].values) - 1 if len(columns) > 1 else 0
+    if not last:
+        return ()
+
+    # the last angle stays: the steps are a part of all
+    def fits(step: int) -> bool:
+        return last % step == 0 and last // step < across
+
+    step = next(filter(fits, range(1, last)), 1)
+    return tuple(column._replace(values=column.values[::step], marked=()) for column in columns)
+
+
+def _first_rows(table: PlaceTable, rows: int) -> PlaceTable:
+    """Return the first rows of a table of places."""
+    columns = tuple(column._replace(values=column.values[:rows]) for column in table.columns)
+    return table._replace(names=table.names[:rows], columns=columns)
 
 
 def _first_key_values(
@@ -443,19 +463,22 @@ def equal_loads(name: str, of: str, key_values: Iterable[KeyValue]) -> Hashable:
 
 def _figures(key_values: Iterable[KeyValue]) -> Hashable:
     """Return the key values without their crank angles, to nine digits of the largest one of the same unit."""
-    given, by_unit = tuple(key_values), dict[str, list[CellValue]]()
-    for one in given:
-        if not one.noise:
-            by_unit.setdefault(one.unit, []).extend(
-                one.value if isinstance(one.value, tuple) else (one.value,)
-            )
-    return *(one.id for one in given), *(
-        (unit, _nine_digits(values)) for unit, values in by_unit.items()
-    )
+    ids = []
+    by_unit = dict[str, list[CellValue]]()
+    for key_value in key_values:
+        ids.append(key_value.id)
+        if not key_value.noise:
+            value = key_value.value
+            numbers = value if isinstance(value, tuple) else (value,)
+            by_unit.setdefault(key_value.unit, []).extend(numbers)
+    rounded = tuple((unit, _nine_digits(values)) for unit, values in by_unit.items())
+    return tuple(ids), rounded
 
 
 def _nine_digits(values: Sequence[CellValue]) -> Hashable:
     """Return the largest of these values, and a hash of all relative to it, both rounded to nine digits."""
-    largest = max((abs(value) for value in values if value is not None), default=0.0) or 1.0
-    relative = tuple(None if value is None else round(value / largest, 9) for value in values)
+    numbers = [value for value in values if value is not None]
+    gaps = tuple(row for row, value in enumerate(values) if value is None)
+    largest = max(map(abs, numbers), default=0.0) or 1.0
+    relative = tuple(round(number / largest, 9) for number in numbers), gaps
     return f"{largest:.9g}", hash(relative)  # the values of a long table would take much memory

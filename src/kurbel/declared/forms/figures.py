@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.numerals import NUMBER, familiar, keyboard_text
@@ -32,12 +32,12 @@ class Bound(float):
 
     def __new__(cls, value: float, unit: str = "", name: str = "") -> "Bound":
         bound = super().__new__(cls, value)
-        bound.unit, bound.name = unit, name
+        bound.unit = unit
+        bound.name = name
         return bound
 
 
-@dataclass(frozen=True, eq=False)
-class Expected:
+class Expected(NamedTuple):
     """The smallest and the largest value that meet an expectation, in the base; unit, text and name as written."""
 
     low: float
@@ -71,10 +71,10 @@ class Figures(Form):
     shape = dict
 
     def __init__(self, expected: str, written: str, what: str, tolerated: bool = False) -> None:
-        super().__init__(
-            expected, written=written, schema={"type": "object"}
-        )  # see `schema` for the key values
-        self.what, self.tolerated = what, tolerated
+        # see `schema` for the key values
+        super().__init__(expected, written=written, schema={"type": "object"})
+        self.what = what
+        self.tolerated = tolerated
 
     def figure_of(self, quantity: Quantity) -> Form:
         """Return the form of a figure for a quantity."""
@@ -83,54 +83,63 @@ class Figures(Form):
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read every figure by the form of its quantity."""
-        if not isinstance(
-            value, dict
-        ):  # an empty one, as --set limits={} writes it, takes off those of the file
-            refused(
-                f"expected {self.expected}, got {'nothing' if is_nothing(value) else node_kind(value)}"
-            )
-        known = reading.key_values()
-        found: dict[str, object] = {}
-        for name, written in value.items():
-            scope, own, ids = _meant(name, known)
-            wrong = ambiguity(own, ids) if ids else self._unknown(name, known)
+        # an empty one, as --set limits={} writes it, takes off those of the file
+        if not isinstance(value, dict):
+            refused(f"expected {self.expected}, got {_node_or_nothing(value)}")
+        quantities = reading.key_values()
+        figures: dict[str, object] = {}
+        for name, text in value.items():
+            # which key value is meant
+            scope, symbol, ids = _meant_ids(name, quantities)
             id = ".".join(filter(None, (scope, *ids[:1])))
-            if not wrong and known[ids[0]].listed:
-                wrong = f"'{name}' is a list of values; no {self.what} can be put on it"
-            if id in found:
-                wrong = f"'{text_in_one_line(name)}' is the symbol of {id}, which is given already; leave one of them out"
-            if wrong:
-                reading.fault((*path, name), wrong, at_key=True)
+            fault = ambiguity(symbol, ids) if ids else self._unknown(name, quantities)
+            if not fault and quantities[ids[0]].listed:
+                fault = f"'{name}' is a list of values; no {self.what} can be put on it"
+            if id in figures:
+                fault = (
+                    f"'{text_in_one_line(name)}' is the symbol of {id}, "
+                    "which is given already; leave one of them out"
+                )
+            if fault:
+                reading.fault((*path, name), fault, at_key=True)
                 continue
-            figure = self.figure_of(known[ids[0]]).read(reading, written, (*path, name))
+            # its figure
+            figure = self.figure_of(quantities[ids[0]]).read(reading, text, (*path, name))
             if isinstance(figure, Expected):
-                figure = replace(figure, name=name)
-            found[id] = (
-                Bound(figure, written_unit(str(written)), name)
-                if isinstance(figure, float)
-                else figure
-            )
-        return REFUSED if has_refused(found.values()) else tuple(found.items())
+                figure = figure._replace(name=name)
+            elif isinstance(figure, float):
+                figure = Bound(figure, written_unit(str(text)), name)
+            figures[id] = figure
+        return REFUSED if has_refused(figures.values()) else tuple(figures.items())
 
-    def _unknown(self, name: str, known: Mapping[str, Quantity]) -> str:
-        single = {id: one for id, one in known.items() if not one.listed}
+    def _unknown(self, name: str, quantities: Mapping[str, Quantity]) -> str:
+        """Return the message on a name that no key value has, with a likely one or the first few."""
+        single = {id: quantity for id, quantity in quantities.items() if not quantity.listed}
         hint = did_you_mean(name, tuple(single)) or in_sentences(name, single.values())
-        some = f"; known are {', '.join([*known][:6])}, …"
-        return f"unknown key value '{text_in_one_line(name)}'{hint or some}"
+        if not hint:
+            hint = f"; known are {', '.join([*quantities][:6])}, …"
+        return f"unknown key value '{text_in_one_line(name)}'{hint}"
 
 
-def _meant(name: str, known: Mapping[str, Quantity]) -> tuple[str, str, tuple[str, ...]]:
+def _meant_ids(name: str, quantities: Mapping[str, Quantity]) -> tuple[str, str, tuple[str, ...]]:
     """Return the prefix of a name, '' without one, the rest, and the ids that this means.
 
     Ids are looked up first, with and without a prefix: for symbols all key values are needed.
     """
-    scope, own = scoped(name)
-    if name in known:
+    scope, rest = scoped(name)
+    if name in quantities:
         return "", name, (name,)
-    if own in known:
-        return scope, own, (own,)
-    ids = called(name, known.values())
-    return ("", name, ids) if ids else (scope, own, called(own, known.values()))
+    if rest in quantities:
+        return scope, rest, (rest,)
+    ids = called(name, quantities.values())
+    if ids:
+        return "", name, ids
+    return scope, rest, called(rest, quantities.values())
+
+
+def _node_or_nothing(value: Node) -> str:
+    """Return the description of a value that is no mapping, for messages."""
+    return "nothing" if is_nothing(value) else node_kind(value)
 
 
 LIMITS = Figures(
@@ -154,42 +163,49 @@ class FigureForm(Form):
         self.size = size
         self.absolute = f"{size.example} ± 0.1 {written_unit(size.example)}".rstrip()
         sample = f"{size.example} ± 0.5 %"
-        either = f"a figure and its tolerance, such as '{sample}' or '{self.absolute}'"
-        super().__init__(f"{either}, or two bounds in a list", sample)
+        tolerated = f"a figure and its tolerance, such as '{sample}' or '{self.absolute}'"
+        super().__init__(f"{tolerated}, or two bounds in a list", sample)
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a figure with its tolerance, or two bounds."""
         if isinstance(value, list) and len(value) == 2:
-            low, high = (
-                self.size.read(reading, one, (*path, index)) for index, one in enumerate(value)
-            )
-            if low is REFUSED or high is REFUSED:
-                return REFUSED
-            if low > high:
-                refused(
-                    f"the first bound, {value[0]}, is larger than the second, {value[1]}; exchange them"
-                )
-            return Expected(low, high, written_unit(str(value[0])), f"{value[0]} to {value[1]}")
+            return self._two_bounds(reading, value, path)
         parts = re.split(_PLUS_MINUS, familiar(value)) if isinstance(value, str) else []
         if len(parts) != 2 or not all(parts):
             refused(f"expected {self.expected}, got {node_kind(value)}")
-        figure, tolerance = parts
-        percent = re.fullmatch(_PERCENT, tolerance)
-        if not written_unit(figure) and not percent:
-            figure = f"{figure} {written_unit(tolerance)}"  # 13.16 ± 0.05 m/s2
-        middle = self.size.read(reading, Plain(figure), path)
-        around = (
-            1.0 if percent or middle is REFUSED else self.size.read(reading, Plain(tolerance), path)
-        )
-        if middle is REFUSED or around is REFUSED:
+        # the figure; without a unit it has that of the tolerance: 13.16 ± 0.05 m/s2
+        figure_text, tolerance_text = parts
+        percent = re.fullmatch(_PERCENT, tolerance_text)
+        if not written_unit(figure_text) and not percent:
+            figure_text = f"{figure_text} {written_unit(tolerance_text)}"
+        figure = self.size.read(reading, Plain(figure_text), path)
+        if figure is REFUSED:
             return REFUSED
+        # the tolerance
         if percent:
-            around = float(percent[1]) / 100 * abs(middle)
-        if not around > 0:
+            tolerance = float(percent[1]) / 100 * abs(figure)
+        else:
+            tolerance = self.size.read(reading, Plain(tolerance_text), path)
+        if tolerance is REFUSED:
+            return REFUSED
+        if not tolerance > 0:
+            size = "negative" if tolerance else "0"
+            refused(f"the tolerance of '{value}' is {size}; write how far off it may be")
+        unit = written_unit(figure_text)
+        return Expected(figure - tolerance, figure + tolerance, unit, str(value))
+
+    def _two_bounds(self, reading: Reading, bounds: list[Node], path: Path) -> object:
+        """Read the smallest and the largest value that meet the expectation."""
+        low = self.size.read(reading, bounds[0], (*path, 0))
+        high = self.size.read(reading, bounds[1], (*path, 1))
+        if low is REFUSED or high is REFUSED:
+            return REFUSED
+        if low > high:
             refused(
-                f"the tolerance of '{value}' is {'0' if not around else 'negative'}; write how far off it may be"
+                f"the first bound, {bounds[0]}, is larger than the second, {bounds[1]}; "
+                "exchange them"
             )
-        return Expected(middle - around, middle + around, written_unit(figure), str(value))
+        return Expected(low, high, written_unit(str(bounds[0])), f"{bounds[0]} to {bounds[1]}")
 
 
 _SPREADS = "'bore: ± 0.2 mm' or 'masses.piston: ± 2 %'"
@@ -208,19 +224,20 @@ class ByKey(Form):
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read uncertainties; the values of a load case are read when they replace those of the file."""
         if not isinstance(value, dict) or not value:
-            refused(
-                f"expected {self.expected}, got {'nothing' if is_nothing(value) else node_kind(value)}"
-            )
+            refused(f"expected {self.expected}, got {_node_or_nothing(value)}")
         if not self.spreads:
             return tuple(value.items())
-        found: dict[str, object] = {}
-        for name, one in value.items():
-            short = isinstance(one, str) and len(one) <= LONGEST_VALUE
-            wrong = (
-                f"expected a standard uncertainty above 0, such as {_SPREADS}, got {node_kind(one)}"
-            )
-            found[name] = (short and spread_text(str(one))) or reading.fault((*path, name), wrong)
-        return REFUSED if has_refused(found.values()) else tuple(found.items())
+        spreads: dict[str, object] = {}
+        for name, node in value.items():
+            spread = ""
+            if isinstance(node, str) and len(node) <= LONGEST_VALUE:
+                spread = spread_text(node)
+            if spread:
+                spreads[name] = spread
+                continue
+            expected = f"expected a standard uncertainty above 0, such as {_SPREADS}"
+            spreads[name] = reading.fault((*path, name), f"{expected}, got {node_kind(node)}")
+        return REFUSED if has_refused(spreads.values()) else tuple(spreads.items())
 
 
 UNCERTAINTIES = ByKey(
@@ -237,6 +254,7 @@ def spread_text(text: str) -> str:
     >>> spread_text("± 0.2 mm"), spread_text("+-2 %"), spread_text("±-1 mm")
     ('0.2 mm', '2 %', '')
     """
-    rest = re.sub(r"(±|\+/-|\+-)\s*", "", keyboard_text(text).strip(), count=1)
-    number = NUMBER.match(rest)
-    return rest if number and float(number.group()) > 0 else ""
+    spread = re.sub(r"(±|\+/-|\+-)\s*", "", keyboard_text(text).strip(), count=1)
+    number = NUMBER.match(spread)
+    is_above_zero = number is not None and float(number.group()) > 0
+    return spread if is_above_zero else ""

@@ -1,21 +1,15 @@
 """Forms of mappings and lists: records (also inline), lists, alternatives, words that choose further keys.
 
 A file is read in two passes: first, forms turn texts into numbers, words and lists, and each mapping into a `ReadMapping`;
-then `Maker` makes records of these.
+then `Maker` (`making`) makes records of these.
 """
 
-import functools
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NoReturn, Union
 
-import numpy as np
-
-from kurbel.arrays import Indivisible, Truth
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
-from kurbel.declared.keys import TOO_EXTREME, Key, Keys, Record, required
+from kurbel.declared.keys import Key, Keys, Record, required
 from kurbel.declared.numerals import NUMBER, keyboard_text
 from kurbel.declared.reading import (
     REFUSED,
@@ -24,15 +18,13 @@ from kurbel.declared.reading import (
     Reading,
     Tree,
     glued_hint,
-    has_refused,
     is_nothing,
     node_kind,
     text_in_one_line,
 )
 from kurbel.declared.units import MOST_ITEMS
-from kurbel.errors import NotANumber, Path, RuleError, path_text, refused
+from kurbel.errors import Path, RuleError, path_text, refused
 from kurbel.near_words import did_you_mean, near
-from kurbel.numerics.arithmetic import is_number
 
 Door = Callable[[], type[Record]]
 """A function with one import inside, that of the record it returns; it is called when the first mapping is read."""
@@ -74,20 +66,21 @@ class RecordForm(Form):
     @cached_property
     def listed(self) -> "Inline | None":
         """The form of the keys of an item of a list that may be here instead."""
-        return next(
-            (form for _, form in self.parts if isinstance(form, Inline) and form.unless), None
-        )
+        for _, form in self.parts:
+            if isinstance(form, Inline) and form.unless:
+                return form
+        return None
 
     def names(self, mapping: Tree) -> Keys:
         """Return all keys that this mapping may have: its own, inline ones, those of the variant."""
-        found = {name: key for name, key in self.keys.items() if not isinstance(key.form, Inline)}
+        keys = {name: key for name, key in self.keys.items() if not isinstance(key.form, Inline)}
         for name, key in self.keys.items():
             if isinstance(key.form, Inline) and key.form.unless not in mapping:
-                found |= key.form.names(mapping)
+                keys |= key.form.names(mapping)
             elif isinstance(key.form, Variant):
                 for case in key.form.chosen(mapping.get(name)):
-                    found |= case.names(mapping)
-        return found
+                    keys |= case.names(mapping)
+        return keys
 
     def unwritten(self) -> dict[str, str]:
         """Return words for what no key describes, those of inline records too, each with what to write instead."""
@@ -109,95 +102,106 @@ class RecordForm(Form):
         self, reading: Reading, mapping: Tree, path: Path, inline: bool = False
     ) -> "ReadMapping":
         """Read the keys of this record from a mapping that may also have keys of other records."""
-        own = [name for name, key in self.keys.items() if not isinstance(key.form, Inline)]
-        rest = {name: value for name, value in mapping.items() if name not in own}
-        missing = required(self.keys)
+        own_names = [name for name, key in self.keys.items() if not isinstance(key.form, Inline)]
+        rest = {name: value for name, value in mapping.items() if name not in own_names}
+        required_names = required(self.keys)
         values: dict[str, object] = {}
         for name, key in self.keys.items():
             form = key.form
             if isinstance(form, Inline):
-                if form.unless not in mapping and rest.keys() & form.names(mapping):
+                is_written = bool(rest.keys() & form.names(mapping))
+                if is_written and form.unless not in mapping:
                     values[name] = form.build(reading, rest, path, inline=True)
             elif isinstance(form, Variant):
-                word = (
-                    form.read(reading, mapping[name], (*path, name))
-                    if name in mapping
-                    else form.default
-                )
-                values[name] = (
-                    word
-                    if word is REFUSED
-                    else form.cases[word].build(reading, rest, path, inline=True)
-                )
+                word = form.read(reading, mapping.get(name, form.default), (*path, name))
+                values[name] = REFUSED
+                if word is not REFUSED:
+                    values[name] = form.cases[word].build(reading, rest, path, inline=True)
             elif name in mapping:
                 values[name] = form.read(reading, mapping[name], (*path, name))
-            elif name in missing:
-                # the error of an inline record points at one of its keys that is given
-                present = next((given for given in own if given in mapping), "") if inline else ""
-                meaning = key.text[:1].lower() + key.text[1:]
-                message = f"'{name}' is missing{' as well' if present else ''}: {meaning}; {key.write(name)}"
-                values[name] = reading.fault(
-                    (*path, present) if present else path, message, bool(present)
-                )
+            elif name in required_names:
+                present = [own_name for own_name in own_names if own_name in mapping]
+                near_key = present[0] if present and inline else ""
+                values[name] = self._missing(reading, name, path, near_key)
         return ReadMapping(self, mapping, path, values)
 
+    def _missing(self, reading: Reading, name: str, path: Path, near_key: str) -> object:
+        """Report that a key is missing; near_key: of an inline record, a key that is present, where the fault points."""
+        key = self.keys[name]
+        meaning = key.text[:1].lower() + key.text[1:]
+        as_well = " as well" if near_key else ""
+        message = f"'{name}' is missing{as_well}: {meaning}; {key.write(name)}"
+        if near_key:
+            return reading.fault((*path, near_key), message, at_key=True)
+        return reading.fault(path, message)
+
     def _unknown(self, reading: Reading, mapping: Tree, path: Path) -> Iterator[str]:
-        """Report each unknown key, and yield the known keys that were probably meant."""
-        known, moved = self.names(mapping), self.moved(mapping)
+        """Report each unknown key, and yield the valid keys that were probably meant."""
+        keys = self.names(mapping)
+        moved = self.moved(mapping)
         unwritten = self.unwritten()
-        synonyms = {word: name for name, key in known.items() for word in (*key.also, key.symbol)}
-        others = f"; valid keys here are {', '.join(known)}"
-        for name in [name for name in mapping if name not in known]:
+        # other words and symbols of the keys
+        synonyms: dict[str, str] = {}
+        for name, key in keys.items():
+            synonyms |= dict.fromkeys((*key.also, key.symbol), name)
+        # all valid keys are listed once
+        valid_keys = f"; valid keys here are {', '.join(keys)}"
+        for name in mapping:
+            if name in keys:
+                continue
             if name in unwritten:
                 reading.fault((*path, name), f"unknown key; {unwritten[name]}", at_key=True)
                 continue
-            place = moved.get(name) or reading.where_it_belongs(name, path)
-            meant = "" if name in moved else synonyms.get(name) or near(name, tuple(known))
+            belongs = moved.get(name) or reading.where_it_belongs(name, path)
+            meant = ""
+            if name not in moved:
+                meant = synonyms.get(name) or near(name, tuple(keys))
             if meant:
-                # a synonym of a key here may be the name of a key elsewhere
                 message = f"unknown key; did you mean '{meant}'?"
-                if place and name in synonyms:
-                    message, meant = f"{message} Or {place}", ""
-            elif place:
-                message = f"does not belong here; {place}"
+                # a synonym of a key here may be the name of a key elsewhere
+                if belongs and name in synonyms:
+                    message = f"{message} Or {belongs}"
+                    meant = ""
+            elif belongs:
+                message = f"does not belong here; {belongs}"
             else:
-                message, others = f"unknown key{others}", ""
+                message = f"unknown key{valid_keys}"
+                valid_keys = ""
             reading.fault((*path, name), message, at_key=True)
             if meant and meant not in mapping:
                 yield meant
 
     def moved(self, mapping: Tree) -> dict[str, str]:
         """Return the keys that belong below another key of this mapping, each with the message where to move it."""
-        moved = {
-            inner: f"move it below '{name}'"
-            for name, form in self.parts
-            if isinstance(form, RecordForm) and form.inline_too
-            for inner in form.names({})
-        }
+        moved: dict[str, str] = {}
+        for name, form in self.parts:
+            if isinstance(form, RecordForm) and form.inline_too:
+                moved |= dict.fromkeys(form.names({}), f"move it below '{name}'")
         if self.listed and self.listed.unless in mapping:
-            unless = self.listed.unless
-            there = (
-                f"'{unless}.each'"
-                if isinstance(mapping[unless], dict)
-                else f"the items of '{unless}'"
-            )
-            moved |= dict.fromkeys(
-                self.listed.names(mapping), f"it belongs {self.listed.item}; move it into {there}"
-            )
+            list_key = self.listed.unless
+            target = f"the items of '{list_key}'"
+            if isinstance(mapping[list_key], dict):
+                target = f"'{list_key}.each'"
+            advice = f"it belongs {self.listed.item}; move it into {target}"
+            moved |= dict.fromkeys(self.listed.names(mapping), advice)
         return moved
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
         """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline."""
-        unless = self.listed.unless if self.listed else ""
+        if self.listed is None:
+            return error
+        list_key = self.listed.unless
+        items = mapping.get(list_key)
         faults = []
         for fault in error.faults:
-            name, item = (*fault.path, "", "")[:2]
-            if unless and name == unless and isinstance(item, int):
-                listed = mapping.get(unless)
-                head = (
-                    () if listed is None else (name, "each" if isinstance(listed, dict) else item)
-                )
-                fault = fault._replace(path=(*head, *fault.path[2:]))
+            is_in_item = len(fault.path) > 1 and isinstance(fault.path[1], int)
+            if is_in_item and fault.path[0] == list_key:
+                path = fault.path
+                if items is None:
+                    path = path[2:]
+                elif isinstance(items, dict):
+                    path = (list_key, "each", *path[2:])
+                fault = fault._replace(path=path)
             faults.append(fault)
         return RuleError(*faults)
 
@@ -211,10 +215,11 @@ class Inline(RecordForm):
 
     def __init__(self, record: type[Record], unless: str = "") -> None:
         super().__init__(record)
-        self.unless, self.item, self.inline = unless, f"to a {unless.removesuffix('s')}", (self,)
+        self.unless = unless
+        self.item = f"to a {unless.removesuffix('s')}"
+        self.inline = (self,)
 
 
-@dataclass(eq=False)
 class ReadMapping:
     """A mapping after the first pass: all that its record is made from.
 
@@ -222,11 +227,14 @@ class ReadMapping:
     record, after the second pass.
     """
 
-    form: RecordForm
-    mapping: Tree
-    path: Path
-    values: dict[str, object]
-    made: Any = None
+    def __init__(
+        self, form: RecordForm, mapping: Tree, path: Path, values: dict[str, object]
+    ) -> None:
+        self.form = form
+        self.mapping = mapping
+        self.path = path
+        self.values = values
+        self.made: Any = None
 
 
 def no_mapping(form: Form, value: Node) -> NoReturn:
@@ -246,105 +254,29 @@ def key_places(
         if isinstance(inner, Inline):
             yield from key_places(inner, path, inner.item if inner.unless else words)
             continue
-        below: Path = (*path, name) if name else path
-        if name:
-            yield words, path, name
+        if not name:
+            yield from key_places(inner, path, words)
+            continue
+        yield words, path, name
         if isinstance(inner, Variant):
-            yield from (
-                (f"to '{name}: {word}'", (), key)
-                for word, case in inner.cases.items()
-                for key in case.keys
-            )
-        yield from key_places(inner, below, f"under '{path_text(below)}'" if name else words)
+            for word, case in inner.cases.items():
+                for key in case.keys:
+                    yield f"to '{name}: {word}'", (), key
+        below: Path = (*path, name)
+        yield from key_places(inner, below, f"under '{path_text(below)}'")
 
 
 def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:
     """Yield (name, form) of every record that the value of a key of this form may be; word: the key."""
     if isinstance(form, RecordForm):
         yield word, form
-    elif isinstance(form, Variant):
-        yield from ((f"{word}: {name}", case) for name, case in form.cases.items())
-    for name, inner in () if isinstance(form, RecordForm) else form.parts:
-        yield from records(inner, name or ("card" if isinstance(form, Keyed) else word))
-
-
-def too_extreme(record: object, values: Mapping[str, object]) -> Truth:
-    """Return whether a number of a record has overflowed, for many machines as an array (machines,).
-
-    values: of its keys. A number may be infinite if one of these is, as `rod: infinite`, or by default.
-    """
-    defaults = [vars(type(record)).get(name) for name in vars(record)]
-    infinite = any(one == math.inf for one in (*values.values(), *defaults) if is_number(one))
-    broken: Truth = False
-    for value in vars(record).values():
-        if is_number(value) or (
-            isinstance(value, np.ndarray) and not isinstance(record, Indivisible)
-        ):
-            broken = broken | ~(np.isfinite(value) | (infinite & (value == math.inf)))
-    return broken
-
-
-class Maker:
-    """The second pass: makes records of what was read, and reports what is wrong with them.
-
-    broken: which of many machines, whose numbers are arrays (count,), break a rule.
-    """
-
-    def __init__(self, reading: Reading, count: int = 0) -> None:
-        self.reading, self.broken = reading, np.zeros(count, dtype=bool)
-
-    def made(self, value: object) -> Any:
-        """Return the record, tuple or value that was read; REFUSED after reporting what is wrong with it."""
-        if isinstance(value, ReadMapping):
-            values = {name: self.made(one) for name, one in value.values.items()}
-            try:
-                value.made = self._record(value.form, values)
-            except ArithmeticError:
-                value.made = self.reading.fault(value.path, TOO_EXTREME)
-            except RuleError as error:
-                value.made = self.reading.refuse(
-                    value.path, value.form.flattened(error, value.mapping)
-                )
-            return value.made
-        if isinstance(value, tuple) and any(isinstance(one, ReadMapping) for one in value):
-            return tuple(map(self.made, value))
-        return value
-
-    def _record(self, form: RecordForm, values: dict[str, object]) -> object:
-        """Return the record of values by key; REFUSED if one could not be read, after judging the others.
-
-        For that the rules get `Form.unread` in its place, a nan, which breaks no rule.
-        """
-        unread = {
-            name: form.keys[name].form.unread
-            for name, one in values.items()
-            if one is REFUSED or (isinstance(one, tuple) and has_refused(one))
-        }
-        if None in unread.values():  # nothing can be in place of a word or a mapping
-            raise RuleError(*form.record.faults_of_some(values))
-        try:
-            record = form.record.from_keys(**(values | unread))
-        except RuleError as error:
-            raise RuleError(
-                *(fault for fault in error.faults if not (unread and isinstance(fault, NotANumber)))
-            ) from None
-        except (ArithmeticError, ValueError):
-            if not unread:  # else a formula takes no nan
-                raise
-        if unread:
-            return REFUSED
-        extreme = too_extreme(record, values)
-        if len(self.broken):
-            rules = [
-                *form.record.rules_of_keys(values),
-                *(record.rules() if isinstance(record, Record) else ()),
-            ]
-            self.broken = functools.reduce(
-                np.logical_or, (rule.broken for rule in rules), self.broken | extreme
-            )
-        elif extreme:
-            refused(TOO_EXTREME)
-        return record
+        return
+    if isinstance(form, Variant):
+        for name, case in form.cases.items():
+            yield f"{word}: {name}", case
+    word_without_key = "card" if isinstance(form, Keyed) else word
+    for name, inner in form.parts:
+        yield from records(inner, name or word_without_key)
 
 
 class Variant(Choice):
@@ -352,16 +284,17 @@ class Variant(Choice):
 
     def __init__(self, default: str, cases: dict[str, RecordForm], also: dict[str, str]) -> None:
         super().__init__(tuple(cases), also)
-        self.default, self.cases, self.inline = default, cases, tuple(cases.values())
+        self.default = default
+        self.cases = cases
+        self.inline = tuple(cases.values())
 
     def chosen(self, word: Node | None) -> Iterable[RecordForm]:
         """Return the form that a word chooses, the default one without a word, or all forms if it is unknown."""
-        known = (
-            self.cases.get(self.default if word is None else word)
-            if isinstance(word, (str, type(None)))
-            else None
-        )
-        return [known] if known else self.cases.values()
+        if word is None:
+            return [self.cases[self.default]]
+        if isinstance(word, str) and word in self.cases:
+            return [self.cases[word]]
+        return self.cases.values()
 
 
 class Listing(Form):
@@ -377,7 +310,9 @@ class Listing(Form):
     def __init__(self, item: Form, called: str = "") -> None:
         item_text = f"a list; each {item.written}"
         super().__init__("a list, each item after '- '", written=item_text, parts=[("", item)])
-        self.item, self.kind, self.called = item, item.kind, called
+        self.item = item
+        self.kind = item.kind
+        self.called = called
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a list into a tuple, with REFUSED in place of what could not be read."""
@@ -392,9 +327,9 @@ class Listing(Form):
             refused("the list is empty; give at least one item or leave the key out")
         if len(value) > MOST_ITEMS:
             refused(f"{len(value)} items; no machine has more than {MOST_ITEMS} of them")
-        whole = self._completed(reading, value, path) if self.called else value
+        items = self._completed(reading, value, path) if self.called else value
         return tuple(
-            self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole)
+            self.item.read(reading, item, (*path, index)) for index, item in enumerate(items)
         )
 
     def is_item(self, mapping: Tree) -> bool:
@@ -405,37 +340,43 @@ class Listing(Form):
 
     def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
         """Return items with the keys that `like` copies; an error in a copied key is reported once, at the original."""
-        assert isinstance(self.item, RecordForm)
         above: dict[str, int] = {}
         completed: list[Any] = list(items)
         for index, item in enumerate(items):
             if not isinstance(item, dict):
                 continue
-            here: Path = (*path, index)
             if "like" in item:
-                like = str(item["like"])
-                if like not in above:
-                    hint = did_you_mean(
-                        like, tuple(above)
-                    ) or f"; above are {', '.join(map(text_in_one_line, above))}" * bool(above)
-                    none_such = f"no {self.called} above this one is called '{text_in_one_line(like)}'{hint}"
-                    completed[index] = reading.fault((*here, "like"), none_such)
+                here: Path = (*path, index)
+                original = str(item["like"])
+                if original not in above:
+                    message = self._none_above(original, tuple(above))
+                    completed[index] = reading.fault((*here, "like"), message)
                     continue
-                other = completed[above[like]]
-                reading.alike[here] = (*path, above[like])
-                own = {key: value for key, value in item.items() if key != "like"}
-                pairs = [
-                    {name, key.instead}
-                    for name, key in self.item.names(other | own).items()
-                    if key.instead
-                ]
-                replaced = {"name", *(key for pair in pairs if own.keys() & pair for key in pair)}
-                completed[index] = {
-                    key: value for key, value in other.items() if key not in replaced
-                } | own
+                reading.alike[here] = (*path, above[original])
+                completed[index] = self._copy(completed[above[original]], item)
             name = completed[index].get("name")
-            above.setdefault(name if isinstance(name, str) else f"{self.called} {index + 1}", index)
+            if not isinstance(name, str):
+                name = f"{self.called} {index + 1}"
+            above.setdefault(name, index)
         return completed
+
+    def _none_above(self, name: str, names_above: tuple[str, ...]) -> str:
+        """Return the message on `like` with a name that no item above has."""
+        hint = did_you_mean(name, names_above)
+        if names_above and not hint:
+            hint = f"; above are {', '.join(map(text_in_one_line, names_above))}"
+        return f"no {self.called} above this one is called '{text_in_one_line(name)}'{hint}"
+
+    def _copy(self, original: Tree, item: Tree) -> Tree:
+        """Return the keys of an item that is `like` another one: copied keys, except those that its own replace."""
+        assert isinstance(self.item, RecordForm)
+        own_keys = {key: value for key, value in item.items() if key != "like"}
+        replaced = {"name"}
+        for name, key in self.item.names(original | own_keys).items():
+            if key.instead and (name in own_keys or key.instead in own_keys):
+                replaced |= {name, key.instead}
+        copied = {key: value for key, value in original.items() if key not in replaced}
+        return copied | own_keys
 
 
 class Nested(Form):
@@ -463,13 +404,12 @@ class OneOf(Form):
     """
 
     def __init__(self, *forms: Form) -> None:
-        self.example, self.schema, self.parts = (
-            forms[0].example,
-            {},
-            tuple(("", form) for form in forms),
-        )
-        self.written = " or ".join(form.written for form in forms)
         self.forms = forms
+        self.example = forms[0].example
+        self.schema = {}
+        self.parts = tuple(("", form) for form in forms)
+        self.written = " or ".join(form.written for form in forms)
+        # its number and its kind are those of the form that has one
         self.kind = next((form.kind for form in forms if form.kind), "")
         numbers = [form.number for form in forms if form.number]
         self.number = numbers[0] if len(numbers) == 1 else None
@@ -483,34 +423,44 @@ class OneOf(Form):
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a value by the first form that has its shape."""
         if isinstance(value, dict):
-            words = {word for form in self.forms if isinstance(form, Choice) for word in form.words}
-            words -= {
-                key for form in self.forms if isinstance(form, RecordForm) for key in form.keys
-            }
-            if name := next((name for name in value if name in words), ""):
-                alone = f"- {name}" if isinstance(path[-1], int) else f"{path[-1]}: {name}"
-                return reading.fault((*path, name), f"takes no value; write '{alone}'", at_key=True)
-            if (listing := self._list_of(value)) is not None:
+            words = self._words_without_value()
+            for name in value:
+                if name in words:
+                    alone = f"- {name}" if isinstance(path[-1], int) else f"{path[-1]}: {name}"
+                    message = f"takes no value; write '{alone}'"
+                    return reading.fault((*path, name), message, at_key=True)
+            listing = self._list_of(value)
+            if listing is not None:
                 return listing.read(reading, value, path)
-        for form in self._fitting(value):
-            return form.read(reading, value, path)
-        return refused(
-            f"expected {self.expected}, got {'nothing' if is_nothing(value) else node_kind(value)}"
-        )
+        fitting = self._fitting(value)
+        if fitting:
+            return fitting[0].read(reading, value, path)
+        node = "nothing" if is_nothing(value) else node_kind(value)
+        return refused(f"expected {self.expected}, got {node}")
+
+    def _words_without_value(self) -> set[str]:
+        """Return the words of these forms that are no keys of a record among them."""
+        words: set[str] = set()
+        keys: set[str] = set()
+        for form in self.forms:
+            if isinstance(form, Choice):
+                words.update(form.words)
+            elif isinstance(form, RecordForm):
+                keys.update(form.keys)
+        return words - keys
 
     def _list_of(self, mapping: Tree) -> "Listing | None":
         """Return the list, among these forms, of which a mapping is an item; None if it is no item.
 
         A record that has its keys, or knows below which of its own they belong, says more about them.
         """
-        records = [form for form in self.forms if isinstance(form, RecordForm)]
-        of_records = {key for form in records for key in (*form.keys, *form.moved(mapping))}
         for form in self.forms:
-            if (
-                isinstance(form, Listing)
-                and form.is_item(mapping)
-                and not mapping.keys() & of_records
-            ):
+            if isinstance(form, RecordForm):
+                keys_of_record = {*form.keys, *form.moved(mapping)}
+                if mapping.keys() & keys_of_record:
+                    return None
+        for form in self.forms:
+            if isinstance(form, Listing) and form.is_item(mapping):
                 return form
         return None
 
@@ -525,7 +475,8 @@ class OneOf(Form):
         text = keyboard_text(value) if isinstance(value, str) else ""
         suiting = [form for form in alike if not (isinstance(form, Choice) and NUMBER.match(text))]
         bare = NUMBER.fullmatch(text) is not None
-        return [form for form in suiting if (form.kind == "ratio") == bare] or suiting or alike
+        of_the_number = [form for form in suiting if (form.kind == "ratio") == bare]
+        return of_the_number or suiting or alike
 
 
 class Keyed(Form):
@@ -546,43 +497,54 @@ class Keyed(Form):
     ) -> None:
         expected = f"{otherwise.expected}; or with one of {', '.join(cases)}"
         super().__init__(expected, parts=(*cases.items(), ("", otherwise)))
-        self.cases, self.otherwise, self.beside = cases, otherwise, beside
+        self.cases = cases
+        self.otherwise = otherwise
+        self.beside = beside
         self.single = {
-            name: Key(one, texts.get(name, ""))
-            for name, one in cases.items()
-            if one.shape is not dict
+            name: Key(form, texts.get(name, ""))
+            for name, form in cases.items()
+            if form.shape is not dict
         }
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a mapping by the key that decides its form."""
         if not isinstance(value, dict):
             no_mapping(self, value)
-        known, cases = self.otherwise.keys, self.cases
-        deciding = next((name for name in value if name in cases), "")
+        deciding = next((name for name in value if name in self.cases), "")
         if not deciding:
-            for name in value:
-                if name not in known and (meant := near(name, (*known, *cases))) in cases:
-                    return reading.fault(
-                        (*path, name), f"unknown key; did you mean '{meant}'?", at_key=True
-                    )
-            return self.otherwise.read(reading, value, path)
-        case, inside = cases[deciding], value[deciding]
+            return self._without_case(reading, value, path)
+        case = self.cases[deciding]
+        inside = value[deciding]
+        # keys of its mapping that are written next to it
         moved: Tree = {}
         if isinstance(inside, dict) and isinstance(case, RecordForm):
-            own = [name for name in self.beside if name in case.keys and name not in inside]
-            moved = {name: value[name] for name in own if name in value}
+            for name in self.beside:
+                if name in case.keys and name in value and name not in inside:
+                    moved[name] = value[name]
             inside = {**inside, **moved}
+        # what is left contradicts it
         others = [name for name in value if name != deciding and name not in moved]
         for name in others:
-            place = (
-                ""
-                if name in known or name in cases
-                else reading.where_it_belongs(name, path) or "leave it out"
-            )
-            message = f"cannot be combined with '{deciding}'; {place or 'leave one of them out'}"
+            if name in self.otherwise.keys or name in self.cases:
+                advice = "leave one of them out"
+            else:
+                advice = reading.where_it_belongs(name, path) or "leave it out"
+            message = f"cannot be combined with '{deciding}'; {advice}"
             reading.fault((*path, name), message, at_key=True)
         inner = case.read(reading, inside, (*path, deciding))
         return REFUSED if others else inner
+
+    def _without_case(self, reading: Reading, mapping: Tree, path: Path) -> object:
+        """Read a mapping without a key that decides its form, unless such a key is only misspelt."""
+        keys = self.otherwise.keys
+        for name in mapping:
+            if name in keys:
+                continue
+            meant = near(name, (*keys, *self.cases))
+            if meant in self.cases:
+                message = f"unknown key; did you mean '{meant}'?"
+                return reading.fault((*path, name), message, at_key=True)
+        return self.otherwise.read(reading, mapping, path)
 
 
 Likeness = Union[str, type, Door, tuple[str, ...], list["Likeness"], Form]

@@ -1,7 +1,6 @@
 """Forms of values: numbers with their units and bounds, words, other texts of one line, lists of points."""
 
 import math
-import operator
 import os
 import re
 from abc import ABC, abstractmethod
@@ -81,13 +80,12 @@ class Form(ABC):
         schema: Schema | None = None,
         parts: "Iterable[tuple[str, Form]]" = (),
     ) -> None:
-        self.expected, self.example, self.schema, self.parts = (
-            expected,
-            example,
-            schema or {},
-            tuple(parts),
-        )
-        self.written = written or (expected if self.shape is str else "a mapping")
+        self.expected = expected
+        self.example = example
+        self.schema = schema or {}
+        self.parts = tuple(parts)
+        usually_written = expected if self.shape is str else "a mapping"
+        self.written = written or usually_written
 
     def kind_as_written(self, value: Node | None) -> str:
         """Return the kind of the number that is written in this way, '' if it is no number."""
@@ -121,10 +119,10 @@ def one_line(value: Node, expected: str) -> str:
 def _beyond(value: Number, kind: str) -> tuple[tuple[Truth, str], ...]:
     """Return whether a value in the base of its kind, or which of many, is too large or too small for machine files."""
     smallest, largest, *_ = KINDS[kind]
-    return (~(np.abs(value) <= largest), "large"), (
-        (value != 0) & (np.abs(value) < smallest),
-        "small",
-    )
+    size = np.abs(value)
+    is_too_large = ~(size <= largest)
+    is_too_small = (value != 0) & (size < smallest)
+    return (is_too_large, "large"), (is_too_small, "small")
 
 
 def out_of_size(value: float, kind: str) -> str:
@@ -133,41 +131,50 @@ def out_of_size(value: float, kind: str) -> str:
     >>> out_of_size(1e-200, "length")
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
-    too = next((too for beyond, too in _beyond(value, kind) if beyond), "")
-    if not too:
+    sizes = [size for is_beyond, size in _beyond(value, kind) if is_beyond]
+    if not sizes:
         return ""
     smallest, largest, _, unit, *_ = KINDS[kind]
     name = "bare number" if kind == "ratio" else kind.replace("_", " ")
-    within = (
-        f"at most {largest:g} {unit}" if too == "large" else f"0 or at least {smallest:g} {unit}"
-    )
-    return f"is too {too}; {'an' if name[0] in 'aei' else 'a'} {name} in a machine file is {within}".rstrip()
+    article = "an" if name[0] in "aei" else "a"
+    allowed = f"0 or at least {smallest:g} {unit}"
+    if sizes[0] == "large":
+        allowed = f"at most {largest:g} {unit}"
+    return f"is too {sizes[0]}; {article} {name} in a machine file is {allowed}".rstrip()
 
 
 def size_faults(points: Sequence[DiagramPoint], unit: UnitFactor, kind: str) -> list[Fault]:
     """Return a fault for the first point whose value in this unit of its kind is too large; [] if there is none."""
-    up, down = unit
+    multiplier, divisor = unit
     for index, (_, value) in enumerate(points):
-        if abs(value * up / down) > KINDS[kind].largest:
+        if abs(value * multiplier / divisor) > KINDS[kind].largest:
             return [Fault((index, 1), f"{value:g} {out_of_size(math.inf, kind)}")]
     return []
 
 
-def order_faults(points: Sequence[DiagramPoint], place: str) -> list[Fault]:
-    """Return a fault for the first point at which a line turns back, or has a third value; place: how one is written.
+def order_faults(points: Sequence[DiagramPoint], format: str) -> list[Fault]:
+    """Return a fault for the first point at which a line turns back, or has a third value.
+
+    format: how the abscissa of a point is written in the message.
 
     >>> order_faults([(0, 5), (0.6, 4), (0.5, 3)], "fraction {:g}")[0].message
     'fraction 0.5 after 0.6: the line turns back'
     """
-    forward = points[0][0] <= points[-1][0]
+    rises = points[0][0] <= points[-1][0]
     for index in range(1, len(points)):
-        before, here = points[index - 1], points[index]
-        if here[0] != before[0] and (here[0] > before[0]) != forward:
-            return [
-                Fault((index,), f"{place.format(here[0])} after {before[0]:g}: the line turns back")
-            ]
-        if index > 1 and points[index - 2][0] == here[0] and points[index - 2] != before != here:
-            return [Fault((index,), f"three points at {place.format(here[0])}; a jump has two")]
+        before = points[index - 1]
+        point = points[index]
+        turns_back = point[0] != before[0] and (point[0] > before[0]) != rises
+        if turns_back:
+            where = f"{format.format(point[0])} after {before[0]:g}"
+            return [Fault((index,), f"{where}: the line turns back")]
+        if index == 1:
+            continue
+        first = points[index - 2]
+        is_third_value = first[0] == point[0] and first != before and before != point
+        if is_third_value:
+            where = format.format(point[0])
+            return [Fault((index,), f"three points at {where}; a jump has two")]
     return []
 
 
@@ -197,52 +204,59 @@ class NumberForm(Form):
     apart: bool = False
 
     def __post_init__(self) -> None:
-        bare = self.kind == "ratio"
+        # an example, and what messages expect
         if self.whole:
-            sample, expected = (
-                str(max(self.least or 0, 3) if self.most is None else self.least),
-                "a whole number",
-            )
-        elif bare:
-            sample, expected = "5" if (self.above or 0) >= 1 else "0.1", "a number"
+            likely = max(self.least or 0, 3) if self.most is None else self.least
+            sample = str(likely)
+            expected = "a whole number"
+        elif self.kind == "ratio":
+            sample = "5" if (self.above or 0) >= 1 else "0.1"
+            expected = "a number"
         else:
             sample = kind_example(self.kind)
             expected = f"a number with its unit, such as '{sample}'"
-        written = "" if bare else f"`{sample}`" + "".join(f", or `{word}`" for word in self.words)
-        super().__init__(
-            expected + "".join(f" or '{word}'" for word in self.words), sample, written
-        )
+        expected += "".join(f" or '{word}'" for word in self.words)
+        # how it is written, on pages
+        written = ""
+        if self.kind != "ratio":
+            written = f"`{sample}`" + "".join(f", or `{word}`" for word in self.words)
+        super().__init__(expected, sample, written)
+        # what it becomes
         self.number = None if self.whole or self.apart else self
-        self.unread = None if self.number is None or self.becomes else math.nan
+        is_nan_unread = self.number is not None and not self.becomes
+        self.unread = math.nan if is_nan_unread else None
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the number, and compare it with its bounds."""
         text = one_line(value, self.expected)
         if text in self.words:
             return self.words[text]
-        if (self.words and text.strip()[0].isalpha()) or (
-            self.or_else and not NUMBER.match(keyboard_text(text))
-        ):
+        is_unknown_word = self.words and text.strip()[0].isalpha()
+        is_no_number = self.or_else and not NUMBER.match(keyboard_text(text))
+        if is_unknown_word or is_no_number:
             refused(f"expected {self.expected}{self.or_else}, got '{text_in_one_line(text)}'")
         try:
             number = self._number(text)
         except UnitError as error:
             refused(f"{error}{glued_hint(text)}")
-        if wrong := self.out_of_bounds(number) or out_of_size(number, self.kind):
-            refused(f"{text} {wrong}")
+        broken_bound = self.out_of_bounds(number) or out_of_size(number, self.kind)
+        if broken_bound:
+            refused(f"{text} {broken_bound}")
         return self.becomes(number, text) if self.becomes else number
 
     def _number(self, text: str) -> float:
         """Return the number in the base of its kind; raises RuleError."""
         if self.kind != "ratio":
             return parse_quantity(text, self.kind)
-        if self.share_of and written_unit(text)[:1].isalpha():
+        has_unit = written_unit(text)[:1].isalpha()
+        if self.share_of and has_unit:
             refused(
-                f"expected a number, got '{text}'; it is a share of {self.share_of}, such as 0.05 or 5 %"
+                f"expected a number, got '{text}'; "
+                f"it is a share of {self.share_of}, such as 0.05 or 5 %"
             )
         if not isinstance(text, Plain):
-            what = "a whole number" if self.whole else "a number"
-            refused(f'expected {what}, got the text "{text}"; leave out the quotation marks')
+            number = "a whole number" if self.whole else "a number"
+            refused(f'expected {number}, got the text "{text}"; leave out the quotation marks')
         if not self.whole:
             return parse_ratio(text)
         if not re.fullmatch(r"[-+]?(0|[1-9][0-9]{0,8})", text):
@@ -257,29 +271,36 @@ class NumberForm(Form):
         >>> NumberForm("length", least=0.1).out_of_bounds(-0.3)
         'is too small; it must be at least 100 mm'
         """
-        for broken, bound, too, must in self._bounds(value) if is_number(value) else ():
-            if broken:
-                return f"is too {too}; it must be {must} {show(bound, self.kind) if bound else '0'}"
-        return "must be finite" if is_number(value) and not self.words and math.isinf(value) else ""
+        if not is_number(value):
+            return ""
+        for is_broken, bound, size, relation in self._bounds(value):
+            if is_broken:
+                limit = show(bound, self.kind) if bound else "0"
+                return f"is too {size}; it must be {relation} {limit}"
+        if math.isinf(value) and not self.words:
+            return "must be finite"
+        return ""
 
     def within(self, values: Array) -> Flags:
         """Return which of many numbers (n,) are that of a word, or within the bounds and the range of machine files."""
-        beyond = np.zeros(len(values), dtype=bool)
-        for broken, *_ in (*self._bounds(values), *_beyond(values, self.kind)):
-            beyond |= broken
-        return np.isin(values, list(self.words.values())) | ~beyond
+        is_beyond = np.zeros(len(values), dtype=bool)
+        for is_broken, *_ in (*self._bounds(values), *_beyond(values, self.kind)):
+            is_beyond |= is_broken
+        is_word = np.isin(values, list(self.words.values()))
+        return is_word | ~is_beyond
 
     def _bounds(self, value: Number) -> Iterator[tuple[Truth, float, str, str]]:
         """Yield whether a number, or which of many, breaks a bound, and what it then is and must be."""
-        counts = (value != 0) | (not self.zero)
-        for bound, breaks, too, must in (
-            (self.above, operator.le, "small", "more than"),
-            (self.least, operator.lt, "small", "at least"),
-            (self.below, operator.ge, "large", "less than"),
-            (self.most, operator.gt, "large", "at most"),
-        ):
-            if bound is not None:
-                yield counts & breaks(value, bound), bound, too, must
+        # 0 may be allowed in addition to the bounds
+        has_bounds = (value != 0) | (not self.zero)
+        if self.above is not None:
+            yield has_bounds & (value <= self.above), self.above, "small", "more than"
+        if self.least is not None:
+            yield has_bounds & (value < self.least), self.least, "small", "at least"
+        if self.below is not None:
+            yield has_bounds & (value >= self.below), self.below, "large", "less than"
+        if self.most is not None:
+            yield has_bounds & (value > self.most), self.most, "large", "at most"
 
 
 class Choice(Form):
@@ -294,12 +315,15 @@ class Choice(Form):
         also: dict[str, str] | None = None,
         means: dict[str, object] | None = None,
     ) -> None:
-        self.words, self.also, self.means = words, also or {}, means or {}
-        every, written = (f"'{word}'" for word in words), ", ".join(f"`{word}`" for word in words)
-        schema: Schema = (
-            {"type": "boolean"} if words == ("true", "false") else {"enum": list(words)}
-        )
-        super().__init__(" or ".join(every), words[0], written, schema)
+        self.words = words
+        self.also = also or {}
+        self.means = means or {}
+        expected = " or ".join(f"'{word}'" for word in words)
+        written = ", ".join(f"`{word}`" for word in words)
+        schema: Schema = {"enum": list(words)}
+        if words == ("true", "false"):
+            schema = {"type": "boolean"}
+        super().__init__(expected, words[0], written, schema)
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Return the word, unchanged: a blank or a tab can be one."""
@@ -307,11 +331,10 @@ class Choice(Form):
             return self.means.get(value, str(value))
         text = one_line(value, self.expected)
         meant = self.also.get(text.strip().lower())
-        hint = (
-            f"; write '{meant}'"
-            if meant
-            else did_you_mean(text, self.words) or f"; write {self.expected}"
-        )
+        if meant:
+            hint = f"; write '{meant}'"
+        else:
+            hint = did_you_mean(text, self.words) or f"; write {self.expected}"
         return refused(f"unknown word '{text_in_one_line(text)}'{hint}")
 
 
@@ -332,11 +355,12 @@ class Text(Form):
         pattern: str = "",
         unit_of: str = "",
     ) -> None:
-        found = (
-            {"type": ["string", "integer"], "pattern": rf"^\s*{pattern}\s*$"} if pattern else schema
-        )
-        super().__init__(expected, example, written, found)
-        self.become, self.pattern, self.unit_of = become, pattern, unit_of
+        if pattern:
+            schema = {"type": ["string", "integer"], "pattern": rf"^\s*{pattern}\s*$"}
+        super().__init__(expected, example, written, schema)
+        self.become = become
+        self.pattern = pattern
+        self.unit_of = unit_of
         self.unread = (math.nan, 1.0) if unit_of else None
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
@@ -344,7 +368,9 @@ class Text(Form):
         text = one_line(value, self.expected)
         if self.pattern and not re.fullmatch(self.pattern, keyboard_text(text)):
             refused(f"expected {self.expected}, got '{text}'")
-        return self.become(keyboard_text(text) if self.pattern else text, reading.folder)
+        if self.pattern:
+            text = keyboard_text(text)
+        return self.become(text, reading.folder)
 
 
 TEXT = Text("a text", lambda text, folder: text.strip(), schema={"type": ["string", "number"]})
@@ -360,16 +386,14 @@ def unit_name(kind: str) -> Text:
 def _firing_order(text: str, folder: str) -> tuple[int, ...]:
     """Return the numbers of all cylinders from 1, each once; raises RuleError for any other list."""
     order = tuple(map(int, re.findall("[0-9]+", text)))
-    twice = next((number for number in order if order.count(number) > 1), None)
-    if twice:
-        refused(f"cylinder {twice} is listed twice in {text}")
-    missing = next((number for number in range(1, max(order) + 1) if number not in order), None)
-    if missing or len(order) > MOST_ITEMS:
-        refused(
-            f"cylinder {missing} is missing in {text}"
-            if missing
-            else f"more than {MOST_ITEMS} cylinders"
-        )
+    for number in order:
+        if order.count(number) > 1:
+            refused(f"cylinder {number} is listed twice in {text}")
+    for number in range(1, max(order) + 1):
+        if number not in order:
+            refused(f"cylinder {number} is missing in {text}")
+    if len(order) > MOST_ITEMS:
+        refused(f"more than {MOST_ITEMS} cylinders")
     return order
 
 
@@ -387,13 +411,18 @@ _MOST_COLUMNS = 5000
 
 def _columns(text: str, folder: str) -> tuple[int, ...]:
     """Return the numbers of columns, each once; raises RuleError."""
-    parts = [[int(one) for one in part.split("-")] for part in text.split(",")]
-    found = tuple(number for part in parts for number in range(part[0], part[-1] + 1))
-    if len(set(found)) < len(found) or any(part[0] > part[-1] for part in parts):
+    numbers: list[int] = []
+    is_backward = False
+    for span in text.split(","):
+        ends = span.split("-")
+        first, last = int(ends[0]), int(ends[-1])
+        is_backward = is_backward or first > last
+        numbers += range(first, last + 1)
+    if is_backward or len(set(numbers)) < len(numbers):
         refused(f"{text} runs backward or names a column twice; write for instance '2-61'")
-    if len(found) > _MOST_COLUMNS:
-        refused(f"{text} are {len(found)} columns; at most {_MOST_COLUMNS} are read")
-    return found
+    if len(numbers) > _MOST_COLUMNS:
+        refused(f"{text} are {len(numbers)} columns; at most {_MOST_COLUMNS} are read")
+    return tuple(numbers)
 
 
 _COLUMN = r"[1-9][0-9]{0,4}(\s*-\s*[1-9][0-9]{0,4})?"
@@ -409,18 +438,16 @@ COLUMN_RANGE = Text(
 
 def _existing(text: str, folder: str) -> str:
     """Return the path of a file, given relative to this folder, as one that can be opened; raises RuleError."""
-    full = os.path.join(folder, text)
-    if os.path.isdir(full):
-        refused(f"'{text_in_one_line(text)}' is a folder; name the file in it")
-    if os.path.exists(full) and not os.path.isfile(full):
-        refused(
-            f"'{text_in_one_line(text)}' is a device or a pipe; name a file that can be read again"
-        )
-    if not os.path.isfile(full):
-        refused(
-            f"there is no file '{text_in_one_line(text)}' in {text_in_one_line(folder) if folder else 'the working directory'}"
-        )
-    return full
+    path = os.path.join(folder, text)
+    if os.path.isfile(path):
+        return path
+    name = f"'{text_in_one_line(text)}'"
+    if os.path.isdir(path):
+        refused(f"{name} is a folder; name the file in it")
+    if os.path.exists(path):
+        refused(f"{name} is a device or a pipe; name a file that can be read again")
+    where = text_in_one_line(folder) if folder else "the working directory"
+    return refused(f"there is no file {name} in {where}")
 
 
 FILE_PATH = Text("the name of a file", _existing, schema={"type": "string", "minLength": 1})
@@ -438,16 +465,20 @@ class Points(Form):
     shape = list
 
     def __init__(self, *names: str, least: int = 2, ratio: bool = False) -> None:
-        self.columns, self.least, self.ratio = names, least, ratio
-        self._called, self._count = {2: ("pair", "two"), 3: ("triple", "three")}[len(names)]
-        self._one = f"[{', '.join(names)}]"
-        sample = "[[0, 1], [1, 2]]" if len(names) == 2 else "[[1, 20, -5]]"
-        number, length = {"type": ["number", "string"] if ratio else "number"}, len(names)
-        one = {"type": "array", "items": number, "minItems": length, "maxItems": length}
-        schema = {"type": "array", "items": one, "minItems": least, "maxItems": MOST_POINTS}
-        super().__init__(
-            f"a list of {self._called}s [{self._one}, …]", sample, f"`[{self._one}, …]`", schema
-        )
+        self.columns = names
+        self.least = least
+        self.ratio = ratio
+        # how messages name a point
+        length = len(names)
+        self._called, self._count = {2: ("pair", "two"), 3: ("triple", "three")}[length]
+        self._pattern = f"[{', '.join(names)}]"
+        sample = "[[0, 1], [1, 2]]" if length == 2 else "[[1, 20, -5]]"
+        # the schema
+        number: Schema = {"type": ["number", "string"] if ratio else "number"}
+        point = {"type": "array", "items": number, "minItems": length, "maxItems": length}
+        schema = {"type": "array", "items": point, "minItems": least, "maxItems": MOST_POINTS}
+        expected = f"a list of {self._called}s [{self._pattern}, …]"
+        super().__init__(expected, sample, f"`[{self._pattern}, …]`", schema)
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the pairs, and report the first few wrong ones."""
@@ -457,73 +488,88 @@ class Points(Form):
             refused(f"expected {self.expected}, got {node_kind(value)}")
         if len(value) > MOST_POINTS:
             refused(f"{len(value)} points; more than {MOST_POINTS} are not taken, thin them out")
-        pairs: list[DiagramPoint] = []
-        wrong: list[tuple[int, RuleError]] = []
+        # its points, and the errors of others by index
+        points: list[DiagramPoint] = []
+        errors: dict[int, RuleError] = {}
         for index, item in enumerate(value):
             try:
-                pairs.append(self._numbers(item))
+                points.append(self._numbers(item))
             except RuleError as error:
-                wrong.append((index, error))
-        if not wrong and len(pairs) < self.least:
-            only = f"only {len(pairs)} point" if pairs else "no points"
-            refused(f"{only}; at least {self.least} are needed, [{self._one}, …]")
-        if wrong and all(isinstance(item, str) for item in value):
+                errors[index] = error
+        if not errors:
+            if len(points) < self.least:
+                count = f"only {len(points)} point" if points else "no points"
+                refused(f"{count}; at least {self.least} are needed, [{self._pattern}, …]")
+            return points
+        if all(isinstance(item, str) for item in value):
             refused(
-                f"expected {self.expected}, got single values; put each {self._called} into its own brackets"
+                f"expected {self.expected}, got single values; "
+                f"put each {self._called} into its own brackets"
             )
-        unknown = [(index, error) for index, error in wrong if error.faults]
-        for index, reason in unknown[:_FAULTS_SHOWN]:
-            reading.refuse((*path, index), reason)
-        if more := unknown[_FAULTS_SHOWN:]:
-            these = f"these {len(more)} points are" if len(more) > 1 else "this point is"
-            reading.fault((*path, more[0][0]), f"from here on {these} wrong as well")
-        return REFUSED if wrong else pairs
+        # the first few errors; an error without faults has been reported
+        new = [index for index, error in errors.items() if error.faults]
+        for index in new[:_FAULTS_SHOWN]:
+            reading.refuse((*path, index), errors[index])
+        further = new[_FAULTS_SHOWN:]
+        if further:
+            subject = f"these {len(further)} points are" if len(further) > 1 else "this point is"
+            reading.fault((*path, further[0]), f"from here on {subject} wrong as well")
+        return REFUSED
 
     def _numbers(self, item: Node) -> DiagramPoint:
         """Return the numbers of a point; raises RuleError, without faults if these have been reported."""
-        length = len(self.columns)
         if item is REFUSED:
             raise RuleError()
+        expected = f"expected a {self._called} {self._pattern}"
         if not isinstance(item, list):
-            refused(f"expected a {self._called} {self._one}, got {node_kind(item)}")
+            refused(f"{expected}, got {node_kind(item)}")
         if any(isinstance(entry, (list, dict)) for entry in item):
-            refused(
-                f"expected a {self._called} {self._one} of numbers; are there too many brackets?"
-            )
-        if len(item) != length:
+            refused(f"{expected} of numbers; are there too many brackets?")
+        if len(item) != len(self.columns):
             self._miscounted(list(map(str, item)))
-        numbers, faults = [], list[Fault]()
+        numbers: list[float] = []
+        faults: list[Fault] = []
         for index, entry in enumerate(item):
+            if entry is REFUSED:
+                continue
             try:
-                if is_nothing(entry):
-                    refused(f"a value is missing; write the {self.columns[index]} as a number")
-                text = text_in_one_line(str(entry), LONGEST_VALUE)
-                if isinstance(entry, str) and not isinstance(entry, Plain):
-                    refused(
-                        f'expected a number, got the text "{text_in_one_line(text)}"; leave out the quotation marks'
-                    )
-                if entry is not REFUSED:
-                    numbers.append(
-                        parse_ratio(text) if self.ratio and not index else parse_number(text)
-                    )
+                numbers.append(self._number(entry, index))
             except RuleError as error:
                 faults += (fault.below((index,)) for fault in error.faults)
-        if len(numbers) < length:
+        if len(numbers) < len(self.columns):
             raise RuleError(*faults)
         return tuple(numbers)
+
+    def _number(self, entry: Node, index: int) -> float:
+        """Return the number at this index of a point; raises RuleError."""
+        if is_nothing(entry):
+            refused(f"a value is missing; write the {self.columns[index]} as a number")
+        text = text_in_one_line(str(entry), LONGEST_VALUE)
+        is_quoted = isinstance(entry, str) and not isinstance(entry, Plain)
+        if is_quoted:
+            refused(
+                f'expected a number, got the text "{text_in_one_line(text)}"; '
+                "leave out the quotation marks"
+            )
+        return parse_ratio(text) if self.ratio and index == 0 else parse_number(text)
 
     def _miscounted(self, texts: list[str]) -> NoReturn:
         """Raise RuleError for a point of too many or too few numbers."""
         length = len(self.columns)
-        if len(texts) == 1 < length < 3 and re.fullmatch(r"\S+\s+\S+", texts[0]):
-            both = text_in_one_line(", ".join(texts[0].split()))
-            refused(f"a comma is missing between the two numbers; write [{both}]")
-        whole = length < len(texts) <= 2 * length and all(
-            re.fullmatch(r"[-+]?\d+", text) for text in texts
+        if len(texts) == 1 and length == 2 and re.fullmatch(r"\S+\s+\S+", texts[0]):
+            numbers = text_in_one_line(", ".join(texts[0].split()))
+            refused(f"a comma is missing between the two numbers; write [{numbers}]")
+        # 1,5 is read as two whole numbers
+        hint = ""
+        has_whole_numbers = all(re.fullmatch(r"[-+]?\d+", text) for text in texts)
+        if has_whole_numbers and length < len(texts) <= 2 * length:
+            hint = "; write decimal points, such as 1.5 for 1,5"
+        point = text_in_one_line(", ".join(texts[:6]))
+        count = len(texts) or "none"
+        refused(
+            f"a {self._called} {self._pattern} has {self._count} numbers, "
+            f"[{point}] has {count}{hint}"
         )
-        hint = "; write decimal points, such as 1.5 for 1,5" if whole else ""
-        wrong = f"a {self._called} {self._one} has {self._count} numbers, [{text_in_one_line(', '.join(texts[:6]))}] has"
-        refused(f"{wrong} {len(texts) or 'none'}{hint}")
 
 
 CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)

@@ -3,11 +3,11 @@
 The unbalanced (shaking) force is minus the sum of mass times acceleration of all moving parts (d'Alembert), at uniform
 rotation. It is a complex number in the plane normal to the shaft, divided by ω² throughout, so that it is in kg m:
 
-      F_y ↑   ∕ stroke line of a cylinder, at its bank angle γ      φ − β  crank angle from its own inner dead centre
+      F_y ↑   ∕ stroke line of a cylinder, at its bank angle γ      φ − δ  its own crank angle, 0 on its stroke line
           │ ∕                                                       m, m_rot  reciprocating mass, mass at the crank pin
     shaft O────→ F_x  stroke line of cylinder 1, outward            z, z_0    position along the shaft, and of reference
 
-    F = Σ (m x″(φ − β) + m_rot R e^{i(φ − β)}) e^{iγ}     all angles in the sense of rotation, x″ = d²x/dφ²
+    F = Σ (m x″(φ − δ) + m_rot R e^{i(φ − δ)}) e^{iγ}     all angles in the sense of rotation, x″ = d²x/dφ²
     M = Σ (z − z_0) F                                     a moment vector turned back by 90°, parallel to its force
     F = Σ c_n e^{inφ}                                     rotating vectors of order n; n < 0 against the crank
     u n² e^{±inφ}                                         force of a weight u (mass times radius) turning at ±n ω
@@ -112,7 +112,7 @@ class Contribution(NamedTuple):
 def contributions_of(
     throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: bool, count: int
 ) -> list[Contribution]:
-    """Return (m x″(φ − β) + m_rot R e^{i(φ − β)}) e^{iγ} of each throw, and u n² e^{inφ} of each weight.
+    """Return (m x″(φ − δ) + m_rot R e^{i(φ − δ)}) e^{iγ} of each throw, and u n² e^{inφ} of each weight.
 
     book: with the acceleration of first order. Cylinders with the same mechanism share one analysis.
     """
@@ -121,14 +121,14 @@ def contributions_of(
     orders = {key: orders_of(throw, book, count) for key, throw in throws_by_mechanism.items()}
     k = max(_FEWEST, *map(len, orders.values()))
     contributions = list[Contribution]()
-    # m x″(φ − β) e^{iγ}: a real function has the conjugate waves backward
+    # m x″(φ − δ) e^{iγ}: a real function has the conjugate waves backward
     for throw in throws:
         listed = orders[id(throw.cylinder.mechanism)]
         forward = np.concatenate((listed, np.zeros((k - len(listed), count))))
         waves = np.concatenate((forward[::-1].conj(), np.zeros((1, count)), forward))
-        crank_position = np.broadcast_to(throw.cylinder.crank_position, count)
-        lag = np.multiply.outer(np.arange(-k, k + 1), crank_position)
-        turned = waves * throw.mass * unit_vector(throw.bank - lag)
+        lag = np.broadcast_to(throw.lag, count)
+        turned_back = np.multiply.outer(np.arange(-k, k + 1), lag)
+        turned = waves * throw.mass * unit_vector(throw.bank - turned_back)
         contributions.append(Contribution(turned, throw.place))
     # m_rot R of the throws, and the weights: u n² e^{inφ}
     rotating = [throw.weight(throw.rotating) for throw in throws]

@@ -28,6 +28,7 @@ from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import taken
+from kurbel.machine.cylinder import crank_lag
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved
@@ -294,12 +295,11 @@ class MainBearing(Bearing):
         force = np.zeros(degrees.shape, complex)
         for throw in line.throws:
             if self._number in (throw.A, throw.B):
-                cylinder, rods = (
-                    line.machine.cylinders[throw.cylinders[0]],
-                    [pins[index] for index in throw.cylinders],
-                )
-                # whole turns are taken off, which is exact: next to a large position an angle would lose its digits
-                angle = CrankAngle.of(degrees - np.fmod(cylinder.crank_position, 360.0))
+                cylinder = line.machine.cylinders[throw.cylinders[0]]
+                rods = [pins[index] for index in throw.cylinders]
+                # whole turns are taken off, which is exact: next to a large angle another would lose its digits
+                lag = np.fmod(crank_lag(cylinder, line.machine.cylinders[0]), 360.0)
+                angle = CrankAngle.of(degrees - lag)
                 on_A, on_B = line.reactions(throw, rods, cylinder, angle)
                 on_bearing = on_A if self._number == throw.A else on_B
                 force -= np.conj(on_bearing) * unit_vector(throw.angle)

@@ -5,7 +5,7 @@ cylinders, with what the efficiency leaves of the effort but all of the inertia,
 
     M(φ) = M_m + Σ Re(M_ν e^{iνφ})           orders of the torques, see `kurbel.solver.chapters.harmonics`
     n_k = ω_e/(2π ν)                         critical speed of order ν with the natural frequency ω_e
-    |Σ Θ e^{−iνβ}|                           sum of the phase vectors of the cranks: how they excite the mode Θ together
+    |Σ Θ e^{−iνδ}|                           sum of the phase vectors of the cranks: how they excite the mode Θ together
 
 A loss factor is known of single orders only. Where none is given, the motion at the working speed is computed over the
 angle, with every jump and thus with all orders; else it is the sum of many orders.
@@ -24,6 +24,7 @@ from kurbel.arrays import Array, ComplexArray, Flags
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.machine.cylinder import crank_lag
 from kurbel.machine.shaft_line import GROUNDED, ShaftLine, ShaftMass, ShaftSegment
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.collocation import periodic
@@ -518,7 +519,7 @@ class ShaftVibration(Results):
                 for name in mass.cylinders
             }
             cranks = [
-                (at_cranks[cylinder.name], cylinder.crank_position)
+                (at_cranks[cylinder.name], crank_lag(cylinder, self.machine.cylinders[0]))
                 for cylinder in self.machine.cylinders
             ]
             amplitudes, positions = np.array(cranks or [(float(angles[0]), 0.0)]).T
