@@ -106,9 +106,7 @@ def test_a_dead_centre_that_is_quarter_turns_off_is_found(
 
 
 @pytest.mark.parametrize("off", [20.0, -20.0])
-def test_the_dead_centre_of_a_compressor_follows_from_its_lines(
-    tmp_path: Path, off: float
-) -> None:
+def test_the_dead_centre_of_a_compressor_follows_from_its_lines(tmp_path: Path, off: float) -> None:
     keys = f", clearance: 0.06, angle_zero: {off:g} deg"
     (note,) = trace_notes(machine_text(tmp_path, compressor(0.06, 8.0), keys, "compressor"))
     (shown,) = re.findall(r"'angle_zero: (-?[0-9.]+) deg'", note)
@@ -184,7 +182,9 @@ def test_figures_of_a_compressor(tmp_path: Path) -> None:
     outer = compressor(c, ratio, n, is_crank_end=True)
     columns_file(tmp_path / "outer.csv", np.column_stack((DEGREES, outer)))
     trace = text[text.index("{trace: ") : text.rindex("}") + 1]
-    other = trace.replace("p.csv", "outer.csv").replace("unit: bar", "unit: bar, angle_zero: 180 deg")
+    other = trace.replace("p.csv", "outer.csv").replace(
+        "unit: bar", "unit: bar, angle_zero: 180 deg"
+    )
     case = Case(loads(f"{text.rstrip()}\n  crank_end: {other}\n"))
     assert case.cylinders[0]["n_compression"].value == pytest.approx(n, abs=1e-6)
     assert case.cylinders[0]["n_compression_crank"].value == pytest.approx(n, abs=1e-6)
