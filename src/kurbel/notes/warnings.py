@@ -198,14 +198,15 @@ _GOOD = 0.85
 
 
 def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
-    """Yield the one warning on each trace of a cylinder, if any."""
+    """Yield the warnings on each trace of a cylinder, the strongest first."""
     for gas in forces.drive.gas:
         for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
             if pressure and pressure.traced:
-                from kurbel.traces.checks import doubt
+                from kurbel.traces.checks import doubts
 
-                text = doubt(pressure.trace, pressure.setting, pressure.each)
-                if text:
+                indicator = gas.piston.indicator
+                role = indicator.role if indicator else None
+                for text in doubts(pressure.trace, pressure.setting, pressure.each, role):
                     yield f"{gas.piston.name}, {end}: {text}"
 
 
