@@ -95,7 +95,11 @@ class Equation(Protocol):
     unknowns: int
     bounded: int | None
     noise: Array
-    modal: Modal | None
+
+    @property
+    def modal(self) -> Modal | None:
+        """The modes, or None."""
+        ...
 
     def known(self, pieces: Pieces) -> Array:
         """Return what depends on the angle alone at the Lobatto nodes, (q, nodes, pieces), the height last."""
