@@ -288,5 +288,5 @@ def test_work_of_friction_is_that_of_a_cycle_of_the_machine() -> None:
 def test_a_load_that_is_only_rounding_has_no_direction_of_its_own() -> None:
     """Beside a largest load of 2 kN what is 1e-13 kN is none, and has the direction of none: 0°."""
     loads_at = np.array([1000 + 1000j, -1e-10 - 1e-10j, 0.0, -2000.0])
-    columns = BearingColumns(np.arange(4.0), {"engine": loads_at}, 2000.0)
+    columns = BearingColumns(np.arange(4.0), {"engine": loads_at}, 2000.0, None)
     assert columns.direction("engine") == pytest.approx([45.0, 0.0, 0.0, 180.0], abs=1e-12)
