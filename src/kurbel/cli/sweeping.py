@@ -4,13 +4,15 @@ import json
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import closing
+from typing import NamedTuple
 
 import click
 
 from kurbel.cli.group import ProgressLine, to_stderr
-from kurbel.cli.options import format_of
+from kurbel.cli.options import format_of, refuse_contradictions
 from kurbel.designs.answers import Design, Head
 from kurbel.designs.chosen import (
+    Aim,
     RowCondition,
     column_summaries,
     pareto_front,
@@ -18,8 +20,7 @@ from kurbel.designs.chosen import (
     read_condition,
     summary_heads,
 )
-from kurbel.designs.find import Solution, Solutions
-from kurbel.designs.find import find_solutions as found_in
+from kurbel.designs.find import Solution, Solutions, find_solutions
 from kurbel.designs.plan import MOST_ROWS, read_axis
 from kurbel.designs.plan import shard as rows_of_shard
 from kurbel.designs.sweep import Spec, Sweep, computed_rows, likely_jobs
@@ -80,44 +81,38 @@ def run_sweep(
 ) -> None:
     """Compute and write the rows: the options of the command. Raises UsageError for those that do not go together."""
     written = format_of(format, file_name, _SUFFIXES, comma)
-    to_file = file_name not in (None, "-")
-    for_people = written in ("table", "markdown")
-    parquet = written == "parquet"
-    in_order = not (sort or pareto or summarised)
-    resumable = to_file and written in _LINES and in_order
-    refused = (
+    is_file = file_name not in (None, "-")
+    is_for_people = written in ("table", "markdown")
+    is_parquet = written == "parquet"
+    is_in_order = not (sort or pareto or summarised)
+    can_resume = is_file and written in _LINES and is_in_order
+    refuse_contradictions(
         (not (vary or cases), "Missing option '--vary' (the values to vary); or give --cases."),
         (cases and case_name, "--cases has every load case, --case one; leave one of them out."),
         (top and not sort, "--top N takes the first rows of --sort ID; give --sort too."),
         (
-            resume and not resumable,
+            resume and not can_resume,
             "--resume goes on in csv or json lines, rows in order; give --output FILE.csv.",
         ),
-        (parquet and not to_file, "Parquet is a file; give --output FILE.parquet."),
+        (is_parquet and not is_file, "Parquet is a file; give --output FILE.parquet."),
         (
-            summarised and (shard or parquet),
+            summarised and (shard or is_parquet),
             "--summary is of all rows, as text; no --shard, no parquet.",
         ),
         (dask and jobs, "give only one of --dask and --jobs."),
     )
-    for is_wrong, message in refused:
-        if is_wrong:
-            raise click.UsageError(message)
     refuse_overwriting(file_name, (file,))
 
     # the sweep, and which of its rows are wanted
-    origin = source.read(file)._replace(case=case_name).set_over(overrides)
-    axes = tuple(map(read_axis, vary))
-    most_rows = None if yes else MOST_ROWS
-    system = units or ("metric" if for_people else "si")
+    system = units or ("metric" if is_for_people else "si")
     sweep = Sweep(
         Spec(
-            origin,
-            axes,
+            source.read(file)._replace(case=case_name).set_over(overrides),
+            tuple(map(read_axis, vary)),
             side_by_side,
             sample,
             seed,
-            most_rows,
+            None if yes else MOST_ROWS,
             cases,
             columns or (),
             with_angles,
@@ -125,18 +120,14 @@ def run_sweep(
         )
     )
     rows = range(sweep.rows) if shard is None else rows_of_shard(shard, sweep.rows)
-    columns_to_choose_by = (*sweep.heads, *map(Head, sweep.texts))
-    row_conditions = [read_condition(condition, columns_to_choose_by) for condition in conditions]
-    aims = [read_aim(aim, columns_to_choose_by, "--pareto") for aim in pareto or ()]
-    order = None if sort is None else read_aim(sort, columns_to_choose_by, "--sort")
+    selection = _selection(sweep, conditions, pareto or (), sort, top)
 
     # the columns that are written
-    if for_people:
-        shown = sweep.shown
-    else:
-        shown = [(head.id, place) for place, head in enumerate(sweep.heads)]
-    names = tuple((name, sweep.heads[index].unit) for name, index in shown)
-    titles = Titles(names, sweep.texts, types=sweep.types() if parquet else ())
+    columns_shown = sweep.shown
+    if not is_for_people:
+        columns_shown = [(head.id, index) for index, head in enumerate(sweep.heads)]
+    names = tuple((name, sweep.heads[index].unit) for name, index in columns_shown)
+    titles = Titles(names, sweep.texts, types=sweep.types() if is_parquet else ())
     if summarised:
         titles = Titles(summary_heads(sweep.heads), row="column")
     look = Look(written, comma=comma, digits=digits)
@@ -145,55 +136,86 @@ def run_sweep(
     written_before = NOTHING_WRITTEN
     if resume:
         written_before, rows = rows_written_before(
-            file_name or "", sweep, titles, look, rows, row_conditions
+            file_name or "", sweep, titles, look, rows, selection.conditions
         )
-    headed = rows.start == 0 and written_before == NOTHING_WRITTEN
+    has_titles = rows.start == 0 and written_before == NOTHING_WRITTEN
 
-    jobs = jobs or (1 if shard else likely_jobs(len(rows)))
-    on_terminal = sys.stdout is not None and sys.stdout.isatty()
-    rows_show_progress = on_terminal and not file_name and not for_people
+    # computed row by row while they are written
+    if not jobs:
+        jobs = 1 if shard else likely_jobs(len(rows))
+    is_terminal = sys.stdout is not None and sys.stdout.isatty()
+    rows_show_progress = is_terminal and not file_name and not is_for_people
     with closing(computed_rows(sweep, rows, jobs, dask, to_stderr)) as computed:
         designs: Iterable[Design] = computed
         if not rows_show_progress:
             designs = ProgressLine("sweep").counted(designs, "designs", len(rows))
-        designs = (row for row in designs if _holds_all(row, row_conditions))
-        if aims:
-            designs = pareto_front(designs, aims)
-        if order:
-            designs = sorted(designs, key=order.of)[:top]
+        designs = selection.of(designs)
         if summarised:
             designs = column_summaries(designs, sweep.heads)
-        elif for_people:
-            designs = (_with_columns(row, shown) for row in designs)
-        advice = "; run again with --resume to continue" if resumable else ""
+        elif is_for_people:
+            designs = (_with_columns(row, columns_shown) for row in designs)
+        advice = "; run again with --resume to continue" if can_resume else ""
         write_rows(
             designs,
             titles,
             look,
             file_name,
-            lambda what_is_left: to_stderr(what_is_left + advice),
-            headed,
+            lambda message: to_stderr(message + advice),
+            has_titles,
             written_before,
         )
-    all_columns = not (columns or to_file or summarised)
-    if all_columns and for_people and on_terminal:
+    has_all_columns = is_for_people and not (columns or is_file or summarised)
+    if has_all_columns and is_terminal:
         to_stderr(
             f"{len(names)} columns; '--columns ID,ID' prints fewer, '-o rows.csv' writes a file"
         )
 
 
-def _holds_all(row: Design, conditions: Sequence[RowCondition]) -> bool:
-    return all(condition.holds(row) for condition in conditions)
+class _Selection(NamedTuple):
+    """Which rows of a sweep are written, and in which order."""
+
+    conditions: Sequence[RowCondition]
+    aims: Sequence[Aim]
+    order: Aim | None
+    top: int | None
+
+    def of(self, designs: Iterable[Design]) -> Iterable[Design]:
+        """Return the selected rows."""
+        designs = filter(self._is_wanted, designs)
+        if self.aims:
+            designs = pareto_front(designs, self.aims)
+        if self.order:
+            designs = sorted(designs, key=self.order.of)[: self.top]
+        return designs
+
+    def _is_wanted(self, design: Design) -> bool:
+        """Return whether a row meets all conditions."""
+        return all(condition.holds(design) for condition in self.conditions)
 
 
-def _with_columns(row: Design, shown: Sequence[tuple[str, int]]) -> Design:
+def _selection(
+    sweep: Sweep,
+    conditions: Iterable[str],
+    pareto: Iterable[str],
+    sort: str | None,
+    top: int | None,
+) -> _Selection:
+    """Return the selection that options describe by columns of the sweep; raises UsageError."""
+    heads = (*sweep.heads, *map(Head, sweep.texts))
+    row_conditions = [read_condition(condition, heads) for condition in conditions]
+    aims = [read_aim(aim, heads, "--pareto") for aim in pareto]
+    order = None if sort is None else read_aim(sort, heads, "--sort")
+    return _Selection(row_conditions, aims, order, top)
+
+
+def _with_columns(row: Design, columns_shown: Sequence[tuple[str, int]]) -> Design:
     """Return a row with the values of the columns that are shown."""
-    return row._replace(values=tuple(row.values[index] for _, index in shown))
+    return row._replace(values=tuple(row.values[index] for _, index in columns_shown))
 
 
 # find
 
-_SUFFIXES_OF_FOUND = {".csv": "csv", ".json": "json", ".md": "markdown"}
+_SUFFIXES_OF_SOLUTIONS = {".csv": "csv", ".json": "json", ".md": "markdown"}
 _DIGITS = 7
 """Significant digits of a table: values are found to be written into a file."""
 
@@ -217,7 +239,7 @@ def run_find(
     digits: int | None,
 ) -> None:
     """Search, and print, draw or write what is found: the options of the command. Raises KurbelError."""
-    refused = (
+    refuse_contradictions(
         (write and case_name, "--write prints FILE; leave --case out."),
         (write and format, "--write prints FILE; leave --format out."),
         (take and not write, "--take chooses the solution for --write; give --write too."),
@@ -225,30 +247,30 @@ def run_find(
         (plot and format, "--plot draws; leave --format out."),
         (plot and len(vary) > 1, "--plot draws a key value over one key, and two are varied."),
     )
-    for is_wrong, message in refused:
-        if is_wrong:
-            raise click.UsageError(message)
     if plot and file_name:
         check_file(file_name)
-    written = "table" if write or plot else format_of(format, file_name, _SUFFIXES_OF_FOUND, comma)
+    written = "table"
+    if not write and not plot:
+        written = format_of(format, file_name, _SUFFIXES_OF_SOLUTIONS, comma)
     refuse_overwriting(file_name, (file,))
     origin = source.read(file)._replace(case=case_name).set_over(overrides)
     with ProgressLine("find") as progress:
-        solutions = found_in(origin, vary, equations, least, greatest, conditions, progress)
+        solutions = find_solutions(origin, vary, equations, least, greatest, conditions, progress)
     if write:
         solution = _solution_to_write(solutions, take)
         write_out([_with_values(origin, solutions, solution)], file_name, "utf-8")
         return
 
-    system = units or ("si" if written in ("csv", "json") else "metric")
+    usual_system = "si" if written in ("csv", "json") else "metric"
+    system = units or usual_system
     if plot:
         draw_output([picture(solutions, system)], Look(comma=comma, digits=digits), file_name)
     elif written == "json":
-        text = json.dumps(as_json(solutions), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
-        write_out([text], file_name, "utf-8")
+        text = json.dumps(as_json(solutions), ensure_ascii=False, allow_nan=False, indent=1)
+        write_out([text + "\n"], file_name, "utf-8")
     else:
-        default_digits = None if written == "csv" else _DIGITS
-        look = Look(written, comma=comma, digits=digits or default_digits)
+        usual_digits = None if written == "csv" else _DIGITS
+        look = Look(written, comma=comma, digits=digits or usual_digits)
         titles, rows = as_rows(solutions, system)
         write_rows(rows, titles, look, file_name, to_stderr)
     for remark in remarks(solutions):
@@ -261,15 +283,20 @@ def _solution_to_write(solutions: Solutions, take: int | None) -> Solution:
     if count > 1 and not take:
         choices = "; ".join(_in_words(solutions, solution) for solution in solutions.found)
         raise click.UsageError(f"--write: {count} solutions; choose one by --take N: {choices}")
-    if take and take > count:
-        raise click.UsageError(f"--take {take}: there {'are' if count > 1 else 'is'} {count}.")
-    return solutions.found[(take or 1) - 1]
+    number = take or 1
+    if number > count:
+        verb = "are" if count > 1 else "is"
+        raise click.UsageError(f"--take {take}: there {verb} {count}.")
+    return solutions.found[number - 1]
 
 
 def _in_words(solutions: Solutions, solution: Solution) -> str:
     """Return the values of the varied keys, as in `bore = 450 mm, stroke = 600 mm`."""
-    pairs = zip(solutions.varied, solution.values)
-    return ", ".join(f"{varied.key} = {varied.written(value, 9)}" for varied, value in pairs)
+    equations = [
+        f"{varied.key} = {varied.written(value, 9)}"
+        for varied, value in zip(solutions.varied, solution.values)
+    ]
+    return ", ".join(equations)
 
 
 def _with_values(origin: Origin, solutions: Solutions, solution: Solution) -> str:
