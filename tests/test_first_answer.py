@@ -283,3 +283,20 @@ def test_two_rods_with_several_pistons_have_tables_with_their_names() -> None:
 def test_a_machine_without_a_guide_has_no_guide_force() -> None:
     page = printed("forces", str(CONFIGS / "yoke-frame-pump.yaml"))
     assert "guide force" not in page
+
+
+def cells_of_b(angles: str) -> list[str]:
+    table = printed("motion", WATERWORKS, "--angles", angles, "--columns", "b")
+    row = next(line for line in table.splitlines() if line.startswith("b"))
+    return row.split()[2:]
+
+
+def test_no_value_next_to_a_zero_of_the_curve_is_printed_as_zero() -> None:
+    """R ω² (cos φ + (λ cos 2φ + λ³ sin⁴ φ)/(1 − λ² sin² φ)^1.5) is 2.207e-3 m/s2 at 79.09, 7.687e-6 at 79.1001 degrees."""
+    assert cells_of_b("0,79,90") == ["13.16", "0.02", "-2.24"]
+    # one or two more decimals for all, so that they can be compared
+    assert cells_of_b("0,79.09,90") == ["13.159", "0.002", "-2.238"]
+    # a power of ten for that value alone
+    assert cells_of_b("0,79.1001,90")[::2] == ["13.16", "-2.24"]
+    number, _, power = cells_of_b("0,79.1001,90")[1].partition("·")
+    assert (number, power) == ("7.7", "10⁻⁶")

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 import click
 
 from kurbel.cli import COMMANDS, kurbel
+from kurbel.cli.group import KurbelCommand
 from kurbel.declared.forms.structures import Inline, Keyed, RecordForm, records
 from kurbel.declared.forms.values import Form
 from kurbel.declared.keys import Key, Keys, Record, absent_text
@@ -207,8 +208,9 @@ def _command(name: str) -> str:
     ]
     rows = [row for one in shown if (row := one.get_help_record(context))]
     options = _table(("option", "meaning"), ((f"`{option}`", meaning) for option, meaning in rows))
-    status = f"{command.epilog}" if command.epilog else ""
-    return f"## kurbel {name}\n\n```text\n{usage}\n```\n\n{text}\n\n{options}\n\n{status}"
+    assert isinstance(command, KurbelCommand)
+    end = "\n\n".join(command.end_of_help())
+    return f"## kurbel {name}\n\n```text\n{usage}\n```\n\n{text}\n\n{options}\n\n{end}"
 
 
 def _prose(text: str) -> str:

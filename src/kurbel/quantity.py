@@ -84,8 +84,7 @@ class Quantity(NamedTuple):
         >>> Quantity("M", "M", "torque", "Torque on the shaft").short
         'torque'
         """
-        first = _FIRST_WORDS.match(self.text)
-        return self.called or (first.group().strip() if first else self.text).lower()
+        return self.called or first_words(self.text).lower()
 
     @property
     def bounded_below(self) -> bool:
@@ -152,6 +151,16 @@ class Quantity(NamedTuple):
         plain = self.plain and f"{self.plain}{comma}{end}"
         symbol, text = f"{self.symbol}{comma}{end}", f"{_LARGEST[end]} {self.called}"
         return Quantity(f"{self.id}_{end}", symbol, self.kind, text, plain)
+
+
+def first_words(sentence: str) -> str:
+    """Return the first words of the sentence of a quantity, which name it.
+
+    >>> first_words("Largest velocity on the outstroke")
+    'Largest velocity'
+    """
+    first = _FIRST_WORDS.match(sentence)
+    return first.group().strip() if first else sentence
 
 
 def by_id(*quantities: Quantity) -> dict[str, Quantity]:

@@ -18,7 +18,6 @@ from kurbel.near_words import did_you_mean
 from kurbel.render import Look
 from kurbel.render.output import silence, terminal_size
 from kurbel.report.commands import BROKEN, COMMANDS, NO_SOLUTION
-from kurbel.tables.sources import legend
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -50,16 +49,32 @@ def exit_statuses(command: str = "") -> str:
     return "Exit status: " + "; ".join(meanings)
 
 
-def books_of(command: click.Command) -> str:
-    """Return the books to which the help of a command refers, in ASCII; '' if it refers to none."""
-    texts = [command.help or ""]
-    texts += [option.help or "" for option in command.params if isinstance(option, click.Option)]
-    return Look(encoding="ascii").text(legend(texts))
+def _legend(texts: Iterable[str]) -> str:
+    from kurbel.tables.sources import legend
+
+    return legend(texts)
+
+
+class KurbelCommand(click.Command):
+    """A command whose help ends with the books to which it refers, and with its exit statuses."""
+
+    def end_of_help(self) -> list[str]:
+        """Return these paragraphs, in ASCII."""
+        texts = [self.help or ""]
+        texts += [option.help or "" for option in self.params if isinstance(option, click.Option)]
+        books = Look(encoding="ascii").text(_legend(texts))
+        return [text for text in (books, exit_statuses(self.name or "")) if text]
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        for text in self.end_of_help():
+            formatter.write_paragraph()
+            formatter.write_text(text)
 
 
 class Kurbel(click.Group):
     """The group, which ends every run with a message instead of a traceback."""
 
+    command_class = KurbelCommand
     door: Callable[[str], object]
     """Imports the module of a command, which adds it; set by `kurbel.cli`."""
 
@@ -79,7 +94,6 @@ class Kurbel(click.Group):
         super().add_command(cmd, name)
         assert cmd.name
         cmd.short_help = COMMANDS[cmd.name].summary
-        cmd.epilog = "\n\n".join(filter(None, (books_of(cmd), exit_statuses(cmd.name))))
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from kurbel.cli.group import KurbelCommand
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
@@ -222,7 +223,7 @@ _FILES = (".yaml", ".yml", ".json")
 """Suffixes of machine files."""
 
 
-class CommandWithKeyValues(click.Command):
+class CommandWithKeyValues(KurbelCommand):
     """A command with `--key-values [NAMES]`: names may follow it, as one word or as several, or none."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:

@@ -331,8 +331,8 @@ ZEROED_UNITS = {
 
 
 @cache
-def _units_of(kind: str) -> dict[str, UnitFactor]:
-    """Return the units of a kind by name."""
+def _names_of(kind: str) -> tuple[str, ...]:
+    """Return the names of the units of a kind."""
     names: list[str] = []
     for listed in KINDS[kind].units.split("; "):
         product = re.fullmatch(r"(.*) ([*/]) (.*)", listed)
@@ -342,7 +342,7 @@ def _units_of(kind: str) -> dict[str, UnitFactor]:
         sign = "/" if product[2] == "/" else " "
         for first in product[1].split(", "):
             names += [first + sign + second for second in product[3].split(", ")]
-    return {name: _factor(name, kind) for name in names}
+    return tuple(dict.fromkeys(names))
 
 
 def _factor(unit: str, kind: str) -> UnitFactor:
@@ -356,8 +356,14 @@ def _factor(unit: str, kind: str) -> UnitFactor:
     divisor = 1.0
     for slash, text in re.findall(r"(/?)([^ /]+)", re.sub("(long|short) ", r"\1_", unit)):
         base, digits = re.findall(r"^(.*?\D|1)(-?\d)?$", text)[0]
+        factor = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS.get(base)
+        if factor is None:
+            raise LookupError(
+                f"the unit '{base}' in {unit} of the kind {kind} has no factor: add its multiplier and divisor "
+                "to _FACTORS of kurbel.declared.units, or take it out of KINDS"
+            )
+        more, less = factor
         power = int(digits or 1)
-        more, less = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS[base]
         is_divisor = (power < 0) != bool(slash)
         if is_divisor:
             more, less = less, more
@@ -398,15 +404,15 @@ def unit_factor(unit: str, kind: str) -> UnitFactor:
 
     Raises UnitError with the known units and, where the unit is one of another kind, that kind.
     """
-    units = _units_of(kind)
+    names = _names_of(kind)
     name = _normal(unit)
-    if name in units:
-        return units[name]
-    names = ", ".join([*units][:8])
-    if len(units) > 8:
-        names += ", …"
+    if name in names:
+        return _factor(name, kind)
+    listed = ", ".join(names[:8])
+    if len(names) > 8:
+        listed += ", …"
     hint = unit_hint(name, kind)
-    raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {names}){hint}")
+    raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {listed}){hint}")
 
 
 def kind_name(kind: str) -> str:
@@ -528,7 +534,7 @@ def kinds() -> tuple[str, ...]:
 
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
-    names = tuple(_units_of(kind))
+    names = _names_of(kind)
     return (*names, *ZEROED_UNITS) if kind == "pressure" else names
 
 

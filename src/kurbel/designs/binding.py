@@ -282,8 +282,8 @@ def _with_same_branches(machine: Machine, indices: Indices) -> list[Indices]:
         return numbers
 
     changed(machine, coded)
-    first = machine.cylinders[0]
     for cylinder, other in combinations(machine.cylinders, 2):
+        first = machine.cylinders[0]
         bank_difference = cylinder.bank_angle - other.bank_angle
         pin_difference = pin_lag(cylinder, first) - pin_lag(other, first)
         axial_position = 0.0 if cylinder.axial_position is None else cylinder.axial_position

@@ -141,6 +141,7 @@ class SliderCrank(Mechanism):
     )
 
     name = "slider-crank"
+    is_crank_drive = True
     has_rod = True
     OFFERS = ROD_OFFERS
 

@@ -10,9 +10,7 @@ import numpy as np
 
 from kurbel.arrays import ComplexArray
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms.scotch_yoke import ScotchYoke
-from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.mechanisms.slotted_lever import SlottedLever
+from kurbel.mechanisms import Mechanism, RamLever
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Words
 from kurbel.pictures.picture_source import AROUND, NO_NAME, Source, curve
 from kurbel.solver.state import State
@@ -29,19 +27,15 @@ def construction(source: Source) -> Iterator[Panel]:
     mechanism, omega = source.results.drive.mechanism, source.results.drive.omega
     for degrees in source.angles or (_USUAL,):
         angle, panels = CrankAngle.of(np.asarray(degrees)), dict[str, Panel]()
-        if isinstance(mechanism, SliderCrank) and math.isfinite(mechanism.rod):
+        lever = mechanism.ram_lever
+        if math.isfinite(mechanism.rod_length):
             panels["Displacement"] = _displacement(mechanism, angle)
             if omega:
                 panels["Velocity by components"] = _components(mechanism, angle, omega)
                 polar = _on_the_vertical(source, mechanism, angle, omega)
                 panels["Velocity on the vertical; dashed with an infinite rod"] = polar
-        elif (
-            isinstance(mechanism, SlottedLever)
-            and mechanism.slides
-            and math.isinf(mechanism.link)
-            and omega
-        ):
-            panels["Velocity"] = _of_lever(source, mechanism, angle, omega)
+        elif lever and omega:
+            panels["Velocity"] = _of_lever(source, lever, angle, omega)
         for title, panel in panels.items():
             yield panel._replace(title=f"{title}, {_at(degrees)}")
 
@@ -52,7 +46,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
     drive = source.results.drive
     mechanism = drive.mechanism
     by_rod = drive.rod is None and drive.pin_friction is None and not drive.yoke_rubs
-    if not (isinstance(mechanism, (SliderCrank, ScotchYoke)) and by_rod and source.having("T")):
+    if not (mechanism.is_crank_drive and by_rod and source.having("T")):
         return
 
     def tip(state: State) -> ComplexArray:
@@ -60,10 +54,9 @@ def polar_force(source: Source) -> Iterator[Panel]:
 
     symbol = Words("P + F_f") if source.having("F_friction") else source.words("P")
     panel = source.locus(tip, "P", symbol)
-    reach = (
-        max(float(np.nanmax(np.abs(one))) for one in (panel.curves[0].x, panel.curves[0].y)) or 1.0
-    )
-    radius = _SMALL * reach
+    outline = panel.curves[0]
+    reach = max(float(np.nanmax(np.abs(outline.x))), float(np.nanmax(np.abs(outline.y))))
+    radius = _SMALL * (reach or 1.0)
     for degrees in source.angles or (_USUAL,):
         angle = CrankAngle.of(np.asarray(degrees))
         sin, cos = map(float, mechanism.rod_angle(angle) or (0.0, 1.0))
@@ -72,7 +65,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
         pin, cut = radius * outward, 1j * force * (outward.imag + outward.real * sin / cos)
         rod = min(mechanism.rod_length / mechanism.crank, 1 / _SMALL) * radius * complex(cos, -sin)
         heights = np.append(panel.curves[0].y, [0.0, cut.imag])
-        found = _panel(
+        construction = _panel(
             "force",
             {symbol.symbol: end, "T": cut},
             {symbol.symbol: force, "T": cut.imag},
@@ -84,24 +77,28 @@ def polar_force(source: Source) -> Iterator[Panel]:
             member=[(0j, pin, pin + rod)],
             line=[(0j, end), (0j, cut)],
         )
-        yield found._replace(curves=(*panel.curves, *found.curves), title=_at(degrees))
+        curves = (*panel.curves, *construction.curves)
+        yield construction._replace(curves=curves, title=_at(degrees))
 
 
 def _at(degrees: float) -> str:
     return f"φ = {round(degrees, 6):.9g}°"
 
 
-def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
+def _displacement(mechanism: Mechanism, angle: CrankAngle) -> Panel:
     """Return x as AG, cut off on the stroke line by an arc about the crosshead, and as CE up to the arc through A.
 
     F: foot of the vertical from C. D is the pin half a turn later, at the same angle on the return stroke: its way
     back from B, x_D, is the shorter one.
     """
     pin, head, sin, cos = _straight(mechanism, angle)
-    length, way, psi = mechanism.rod, float(mechanism.coordinate(angle)), math.atan2(sin, cos)
+    length = mechanism.rod_length
+    way = float(mechanism.coordinate(angle))
+    psi = math.atan2(sin, cos)
     arc = length * np.exp(1j * np.linspace(math.pi - psi, math.pi, 25))
     dead = head + way  # the crosshead at its inner dead centre
-    start, above = complex(-mechanism.crank, mechanism.offset), dead + complex(arc[0])
+    start = complex(-mechanism.crank, mechanism.offset)
+    above = dead + complex(arc[0])
 
     # the opposite pin and its crosshead; B is the pin at the outer dead centre, laid off along the stroke line
     later = CrankAngle.of(np.asarray(float(angle.degrees) + 180.0))
@@ -109,7 +106,7 @@ def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
     outer = dead - mechanism.stroke - length
     way_back = float(mechanism.stroke - mechanism.coordinate(later))
     foot = complex(pin.real, mechanism.offset)
-    places = {
+    points = {
         "A": dead - length,
         "B": outer,
         "C": pin,
@@ -121,7 +118,7 @@ def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
     }
     return _panel(
         "length",
-        places,
+        points,
         {"G, x": way, "x_D": way_back},
         faint=(
             mechanism.crank * AROUND,
@@ -137,7 +134,7 @@ def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
     )
 
 
-def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
+def _components(mechanism: Mechanism, angle: CrankAngle, omega: float) -> Panel:
     """Return v of the pin with its component v_s along the rod, which is that of c of the crosshead, too."""
     pin, head, sin, cos = _straight(mechanism, angle)
     pin, head = omega * pin, omega * head
@@ -161,7 +158,7 @@ def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Pane
 
 
 def _on_the_vertical(
-    source: Source, mechanism: SliderCrank, angle: CrankAngle, omega: float
+    source: Source, mechanism: Mechanism, angle: CrankAngle, omega: float
 ) -> Panel:
     """Return c as MF, the curve of c over the displacement, and the circle that it is with an infinite rod."""
     pin, _, sin, cos = _straight(mechanism, angle)
@@ -191,18 +188,18 @@ def _on_the_vertical(
     )
 
 
-def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega: float) -> Panel:
+def _of_lever(source: Source, lever: RamLever, angle: CrankAngle, omega: float) -> Panel:
     """Return c as GH, G under the lever's end and FH parallel to CG, and the curve of c over the place of the ram.
 
     c_1, c_2: largest velocities out and back. Of a lever that swings its end moves on the arc AB, while the crank
     turns through 2 α on the working stroke and 2 β on the return stroke, between the perpendiculars from M on the
     extreme positions.
     """
-    pivot = complex(-mechanism.frame * omega)
-    v = mechanism.crank * omega
+    pivot = complex(-lever.frame * omega)
+    v = lever.crank * omega
     pin = v * complex(angle.cos, angle.sin)
     along = (pin - pivot) / abs(pin - pivot)
-    length = omega * (mechanism.lever or 0.0)
+    length = omega * lever.length
     end = pivot + length * along
     foot = pivot - pivot.real * along.real * along
     under = complex(end.real)
@@ -216,20 +213,20 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
     # the largest velocities, with the pin in the line of both pivots (R 304, 305)
     out, back = source.results.at([0.0]), source.results.at([180.0])
     c_1, c_2 = float(out.c[0]), float(back.c[0])
-    places = {"M": 0j, "C": pin, "D": pivot, "E": end, "F": foot, "G": under, "H": cut, "c": tip}
-    places["c_1"] = complex(line.real + c_1, omega * float(out.x[0]))
-    places["c_2"] = complex(line.real + c_2, omega * float(back.x[0]))
+    points = {"M": 0j, "C": pin, "D": pivot, "E": end, "F": foot, "G": under, "H": cut, "c": tip}
+    points["c_1"] = complex(line.real + c_1, omega * float(out.x[0]))
+    points["c_2"] = complex(line.real + c_2, omega * float(back.x[0]))
 
     # the extreme positions of a lever that swings
     extremes: list[Sequence[complex] | ComplexArray] = []
     angles: list[Curve] = []
-    if mechanism.crank < mechanism.frame:
-        tilt = math.asin(mechanism.crank / mechanism.frame)
+    if lever.crank < lever.frame:
+        tilt = math.asin(lever.crank / lever.frame)
         last = complex(math.cos(tilt), math.sin(tilt))
         foot_of_last = pivot - pivot.real * last.real * last
         swing = np.linspace(-tilt, tilt, 37)
-        places["A"] = pivot + length * last.conjugate()
-        places["B"] = pivot + length * last
+        points["A"] = pivot + length * last.conjugate()
+        points["B"] = pivot + length * last
         alpha = math.pi / 2 + tilt
         to_label = 0.4 * v * np.exp(1j * np.linspace(alpha, -math.pi / 4, 49))
         from_label = 0.4 * v * np.exp(1j * np.linspace(-math.pi / 4, -alpha, 25))
@@ -237,12 +234,12 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
         angles.append(curve("faint", *from_label))
         angles.append(curve("faint", *to_label, name=Words("2 α", "2 alpha")))
         angles.append(curve("faint", *returning, name=Words("2 β", "2 beta")))
-        extremes.append((places["A"], pivot, places["B"]))
+        extremes.append((points["A"], pivot, points["B"]))
         extremes.append((foot_of_last.conjugate(), 0j, foot_of_last))
         extremes.append(pivot + length * np.exp(1j * swing))
     panel = _panel(
         "velocity",
-        places,
+        points,
         {"c": (under - cut).real, "c_1": c_1, "c_2": c_2},
         guide=[(line + 1j * omega * x.min(), line + 1j * omega * x.max())],
         faint=(
@@ -264,13 +261,12 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
     )
 
 
-def _straight(mechanism: SliderCrank, angle: CrankAngle) -> tuple[complex, complex, float, float]:
+def _straight(mechanism: Mechanism, angle: CrankAngle) -> tuple[complex, complex, float, float]:
     """Return the places of crank pin and crosshead in m, with φ = 0 to the right, and sine and cosine of ψ."""
-    pin, (sin, cos) = (
-        mechanism.crank * complex(angle.cos, angle.sin),
-        map(float, mechanism.rod_angle(angle)),
-    )
-    return pin, complex(pin.real + mechanism.rod * cos, mechanism.offset), sin, cos
+    pin = mechanism.crank * complex(angle.cos, angle.sin)
+    sin, cos = map(float, mechanism.rod_angle(angle) or (0.0, 1.0))
+    head = complex(pin.real + mechanism.rod_length * cos, mechanism.offset)
+    return pin, head, sin, cos
 
 
 def _panel(
@@ -280,14 +276,13 @@ def _panel(
     **lines: Sequence[Sequence[complex] | ComplexArray],
 ) -> Panel:
     """Return a panel of lines by their kinds, with named places and the values of some; what is found is a `line`."""
-    curves = [
-        curve(one, *each, look=1 if one == "line" else None)
-        for one, every in lines.items()
-        for each in every
-    ]
-    marks = [
-        Mark(at.real, at.imag, PageFigure(Words(name), values.get(name)))
-        for name, at in places.items()
-    ]
+    curves = []
+    for line_kind, of_kind in lines.items():
+        look = 1 if line_kind == "line" else None
+        for points in of_kind:
+            curves.append(curve(line_kind, *points, look=look))
+    marks = []
+    for name, point in places.items():
+        marks.append(Mark(point.real, point.imag, PageFigure(Words(name), values.get(name))))
     axis = Axis(NO_NAME, kind)
     return Panel(axis, axis, tuple(curves), marks=tuple(marks), equal=True, plain=True)

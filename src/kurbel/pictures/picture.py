@@ -74,10 +74,11 @@ class Curve(NamedTuple):
 
     def closed(self) -> "Curve":
         """Return the curve of a cycle with a jump from its end to its beginning."""
-        x, y = (
-            np.concatenate((one, [np.nan], one[:2])) for one in (self.x, self.y)
-        )  # a piece has two points
-        return self._replace(x=x, y=y)
+
+        def with_jump(values: Array) -> Array:
+            return np.concatenate((values, [np.nan], values[:2]))  # a piece has two points
+
+        return self._replace(x=with_jump(self.x), y=with_jump(self.y))
 
     def at_moment(self, moment: int) -> "Curve":
         """Return the curve at one moment of its movement."""
@@ -136,11 +137,9 @@ class Shape(NamedTuple):
     @property
     def outline(self) -> ComplexArray:
         """The points of its outline."""
-        return (
-            self.points + self.radius * _CIRCLE
-            if self.radius
-            else np.append(self.points, self.points[:1])
-        )
+        if self.radius:
+            return self.points + self.radius * _CIRCLE
+        return np.append(self.points, self.points[:1])
 
 
 class Body(NamedTuple):
@@ -166,12 +165,12 @@ class Body(NamedTuple):
         tint: Number = 1.0,
     ) -> "Body":
         """Return the body of numbers or arrays."""
-        return cls(tuple(shapes), *(np.atleast_1d(one) for one in (place, turn, stretch, tint)))
+        return cls(tuple(shapes), *map(np.atleast_1d, (place, turn, stretch, tint)))
 
     @property
     def moves(self) -> bool:
         """Whether the body moves or changes."""
-        return any(len(one) > 1 for one in self[1:])
+        return any(len(values) > 1 for values in self[1:])
 
     def seen(self, turned: float, mirrored: bool = False, moved: complex = 0.0) -> "Body":
         """Return the body mirrored about the x-axis, turned by degrees about the origin, and moved."""
@@ -192,10 +191,14 @@ class Body(NamedTuple):
 
     def outlines(self) -> list[tuple[str, ComplexArray]]:
         """Return the look and the outline (moments, points) of each shape, wherever it moves."""
-        place, turn, stretch = (one[:, None] for one in (self.place, self.turn, self.stretch))
-        turned, lines = np.exp(1j * np.radians(turn)), [one.outline for one in self.shapes]
-        found = [place + turned * (stretch * line.real + 1j * line.imag) for line in lines]
-        return [(shape.look, line) for shape, line in zip(self.shapes, found)]
+        centre, stretch = self.place[:, None], self.stretch[:, None]
+        turn = np.exp(1j * np.radians(self.turn))[:, None]
+        outlines = []
+        for shape in self.shapes:
+            line = shape.outline
+            moved = centre + turn * (stretch * line.real + 1j * line.imag)
+            outlines.append((shape.look, moved))
+        return outlines
 
 
 class Caption(NamedTuple):
@@ -230,14 +233,15 @@ class Panel(NamedTuple):
     def places(self) -> tuple[list[Array], list[Array]]:
         """All x and all y that are drawn."""
         drawn = [curve.x + 1j * curve.y for curve in self.curves]
-        drawn += [shade.x + 1j * line for shade in self.shades for line in (shade.low, shade.high)]
+        for shade in self.shades:
+            drawn += [shade.x + 1j * shade.low, shade.x + 1j * shade.high]
         drawn += [np.array([complex(mark.x, mark.y)]) for mark in self.marks]
-        drawn += [line for body in self.bodies for _, line in body.outlines()]
-        drawn += [
-            np.array([caption.place - caption.half, caption.place + caption.half])
-            for caption in self.captions
-        ]
-        return [one.real.ravel() for one in drawn], [one.imag.ravel() for one in drawn]
+        for body in self.bodies:
+            drawn += [line for _, line in body.outlines()]
+        for caption in self.captions:
+            left, right = caption.place - caption.half, caption.place + caption.half
+            drawn.append(np.array([left, right]))
+        return [line.real.ravel() for line in drawn], [line.imag.ravel() for line in drawn]
 
     def at_moment(self, moment: int) -> "Panel":
         """Return the panel at one moment of its movement."""
@@ -263,9 +267,8 @@ class Picture(NamedTuple):
     @property
     def heading(self) -> str:
         """The line above the picture."""
-        return ". ".join(
-            filter(None, (self.machine, f"{self.title}: {self.of}" if self.of else self.title))
-        )
+        title = f"{self.title}: {self.of}" if self.of else self.title
+        return f"{self.machine}. {title}" if self.machine else title
 
 
 # a long report

@@ -12,7 +12,6 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
 from kurbel.pictures.constructions import construction, polar_force
 from kurbel.pictures.machine_pictures import (
@@ -60,18 +59,19 @@ def piston_force(source: Source) -> Iterator[Panel]:
     if not source.having("P"):
         return
     reversals = source.results.phi_reversal or ()
+    figures = [PageFigure(Words("force reversal"), at_deg=angle) for angle in reversals]
     lines = _remaining_force(source)
-    panels = (
-        [source.panel(lines, like="P", shaded=True, zero=True, also=reversals)]
-        if len(lines) > 1
-        else []
-    )
-    for panel in (*panels, source.panel(["P"], zero=True)):
-        heights = (
-            source.values(lines[1:], reversals)[0] if panel.shades else np.zeros(len(reversals))
-        )
-        figures = [PageFigure(Words("force reversal"), at_deg=angle) for angle in reversals]
-        yield panel._replace(marks=(*panel.marks, *map(Mark, reversals, heights.tolist(), figures)))
+    if len(lines) > 1:
+        panel = source.panel(lines, like="P", shaded=True, zero=True, also=reversals)
+        # a panel without an area has its marks on zero
+        heights = np.zeros(len(reversals))
+        if panel.shades:
+            heights = source.values(lines[1:], reversals)[0]
+        marks = map(Mark, reversals, heights.tolist(), figures)
+        yield panel._replace(marks=(*panel.marks, *marks))
+    panel = source.panel(["P"], zero=True)
+    marks = map(Mark, reversals, [0.0] * len(reversals), figures)
+    yield panel._replace(marks=(*panel.marks, *marks))
 
 
 def _remaining_force(source: Source) -> list[CurveFormula]:
@@ -87,7 +87,8 @@ def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
     line. J: force reversal (R Abb. 1055)."""
     if len(source.having("P", "x")) < 2 or source.results.drive.mechanism.turns:
         return
-    lines, reversals = _remaining_force(source), source.results.phi_reversal or ()
+    lines = _remaining_force(source)
+    reversals = source.results.phi_reversal or ()
     panels = []
     for breaks, title in _strokes(source, reversals):
         panel = source.panel(
@@ -96,10 +97,14 @@ def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
         marks = _reversals_of_stroke(source, lines, reversals, breaks)
         panels.append(panel._replace(marks=(*panel.marks, *marks)))
     # one scale for all, or the noise of a traced gas exchange would have its own
-    heights = np.concatenate([one for panel in panels for one in panel.places[1]])
-    low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
+    heights = []
+    for panel in panels:
+        heights += panel.places[1]
+    high = float(np.nanmax(np.concatenate(heights)))
+    low = float(np.nanmin(np.concatenate(heights)))
     low -= 0.1 * (high - low)  # or a lowest line that is level would be on the axis
-    yield from (panel._replace(y=panel.y._replace(low=low, high=high)) for panel in panels)
+    for panel in panels:
+        yield panel._replace(y=panel.y._replace(low=low, high=high))
 
 
 def _reversals_of_stroke(
@@ -122,16 +127,19 @@ def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[list[
     """Yield the crank angles at which a stroke begins, bends, or has a point, and ends, and its name."""
     drive = source.results.drive
     cycle, (inner, outer) = drive.cycle, drive.mechanism.dead_centres()
-    bends = [angle + turn for angle in (*source.results.breaks, *also) for turn in (0.0, cycle)]
-    ends = sorted(
-        {(end + turn) % cycle for turn in range(0, int(cycle), 360) for end in (inner, outer)}
-    )
-    for start, end in pairwise((*ends, ends[0] + cycle)):
-        name = "Outstroke" if math.cos(math.radians(start - inner)) > 1 - 1e-9 else "Return stroke"
-        yield (
-            [start, *(angle for angle in bends if start < angle < end), end],
-            f"{name} {start:.4g}–{end:.4g}°",
-        )
+    # twice, since a stroke may go over the end of the cycle
+    bends = list[float]()
+    for angle in (*source.results.breaks, *also):
+        bends += [angle, angle + cycle]
+    ends = set[float]()
+    for turn in range(0, int(cycle), 360):
+        ends |= {(inner + turn) % cycle, (outer + turn) % cycle}
+    in_order = sorted(ends)
+    for start, end in pairwise((*in_order, in_order[0] + cycle)):
+        is_outward = math.cos(math.radians(start - inner)) > 1 - 1e-9
+        name = "Outstroke" if is_outward else "Return stroke"
+        inside = [angle for angle in bends if start < angle < end]
+        yield [start, *inside, end], f"{name} {start:.4g}–{end:.4g}°"
 
 
 def piston_force_of_crank(source: Source) -> Iterator[Panel]:
@@ -155,29 +163,31 @@ def piston_force_of_crank(source: Source) -> Iterator[Panel]:
 
 def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
     """Pressure at both ends of the pistons over the displacement from the inner dead centre (R Abb. 1051)."""
-    results, every = source.results, source.results.drive.gas
-    for gas in every:
-        across = Axis(Words("V", words="volume"), "volume") if over_volume else source.axis("x")
+    results, gases = source.results, source.results.drive.gas
+    for gas in gases:
         curves = list[Curve]()
         for number, end in enumerate((gas.head, gas.crank)):
             if end:
-                name, _ = source.line(
-                    "p_crank" if number else "p_head", "crank end" if number else "head end"
-                )
-                place = partial(_volume, gas, number) if over_volume else attrgetter("displacement")
-                samples = source.samples(
-                    "P", [(NO_NAME, place), (name, partial(_pressure, gas, end))]
-                )
-                curves.append(samples.curve(name, *samples.values).closed())
+                curves.append(_card(source, gas, number, end, over_volume))
         marks: tuple[Mark, ...] = ()
-        if gas is every[0] and not over_volume and (highest := results.p_max):
-            marks = (
-                source.mark("p_max", highest, float(results.at([highest.degrees]).displacement[0])),
-            )
+        highest = results.p_max
+        if gas is gases[0] and not over_volume and highest:
+            displacement = float(results.at([highest.degrees]).displacement[0])
+            marks = (source.mark("p_max", highest, displacement),)
+        across = Axis(Words("V", words="volume"), "volume") if over_volume else source.axis("x")
         up = Axis(Words("p", words="absolute pressure" if gas.absolute else "pressure"), "pressure")
-        curves.append(level(np.concatenate([one.x for one in curves]), gas.base))
-        title = gas.piston.name if len(every) > 1 else ""
+        curves.append(level(np.concatenate([curve.x for curve in curves]), gas.base))
+        title = gas.piston.name if len(gases) > 1 else ""
         yield Panel(across, up, tuple(curves), marks=marks, title=title)
+
+
+def _card(source: Source, gas: PistonGas, number: int, end: Pressure, over_volume: bool) -> Curve:
+    """Return the card of the head end of a piston, 0, or of its crank end, 1."""
+    id, words = ("p_crank", "crank end") if number else ("p_head", "head end")
+    name, _ = source.line(id, words)
+    across = partial(_volume, gas, number) if over_volume else attrgetter("displacement")
+    samples = source.samples("P", [(NO_NAME, across), (name, partial(_pressure, gas, end))])
+    return samples.curve(name, *samples.values).closed()
 
 
 def _pressure(gas: PistonGas, end: Pressure, state: State) -> Array:
@@ -187,8 +197,9 @@ def _pressure(gas: PistonGas, end: Pressure, state: State) -> Array:
 
 def _volume(gas: PistonGas, number: int, state: State) -> Array:
     """Return the volume in m³ at the head end of a piston, 0, or the crank end, 1, with the clearance if known."""
-    swept = gas.stroke - state.displacement if gas.turned != bool(number) else state.displacement
-    return np.asarray(swept * gas.areas[number] + gas.clearance_volumes[number])
+    shrinks_outward = gas.turned != bool(number)
+    stroke = gas.stroke - state.displacement if shrinks_outward else state.displacement
+    return np.asarray(stroke * gas.areas[number] + gas.clearance_volumes[number])
 
 
 def cards_over_volume(source: Source) -> Iterator[Panel]:
@@ -198,14 +209,12 @@ def cards_over_volume(source: Source) -> Iterator[Panel]:
 
 def forces(source: Source) -> Iterator[Panel]:
     """Forces in the rod, on the guide and at the crank pin over the crank angle (R Abb. 1061, 1062)."""
-    offered = [
-        offer.quantity.id
-        for offer in source.results.drive.mechanism.OFFERS
-        if offer.quantity.commands == ("forces",)
-    ]
-    found = source.having("S", "N", "D", "T", "M_out", *offered)
-    for alike in grouped(found, lambda id: source.quantities[id].kind):
-        yield source.panel(alike, zero=True)
+    ids = ["S", "N", "D", "T", "M_out"]
+    for offer in source.results.drive.mechanism.OFFERS:
+        if offer.quantity.commands == ("forces",):
+            ids.append(offer.quantity.id)
+    for of_kind in grouped(source.having(*ids), lambda id: source.quantities[id].kind):
+        yield source.panel(of_kind, zero=True)
 
 
 def polar_effort(source: Source) -> Iterator[Panel]:
@@ -235,7 +244,9 @@ def motion(source: Source) -> Iterator[Panel]:
 def motion_over_stroke(source: Source) -> Iterator[Panel]:
     """Velocity and acceleration over the displacement; dashed those of an infinite rod, an ellipse and a straight line
     (R Abb. 1049, 1050)."""
-    for id in source.having("c", "b") if source.having("x") else ():
+    if not source.having("x"):
+        return
+    for id in source.having("c", "b"):
         panel = _with_infinite_rod(source, id, "x")
         marks = _zeros_of_acceleration(source) if id == "b" else ()
         yield panel._replace(marks=(*panel.marks, *marks))
@@ -253,8 +264,9 @@ def _zeros_of_acceleration(source: Source) -> Iterator[Mark]:
 
 def _with_infinite_rod(source: Source, id: str, over: str) -> Panel:
     """Return a panel of a column; of x, c or b of a slider-crank with the same for an infinite rod."""
-    panel, drive = source.panel([id], over), source.results.drive
-    if not isinstance(drive.mechanism, SliderCrank) or math.isinf(drive.mechanism.rod):
+    panel = source.panel([id], over)
+    drive = source.results.drive
+    if math.isinf(drive.mechanism.rod_length):  # as where there is none
         return panel
     crank, omega = drive.mechanism.crank, drive.omega or 0.0
     infinite: dict[str, Callable[[State], Array]] = {
@@ -267,9 +279,8 @@ def _with_infinite_rod(source: Source, id: str, over: str) -> Panel:
     name = Words(f"{symbol}, L/R = ∞", f"{symbol}, L/R = inf")
     # over the displacement out and back, but a straight line only out: two dashed lines would hide the dashes
     once = (0.0, 180.0) if id == "b" else (0.0, 180.0, 360.0)
-    samples = source.samples(
-        id, [(name, infinite[over]), (name, infinite[id])], breaks=once if over == "x" else None
-    )
+    breaks = once if over == "x" else None
+    samples = source.samples(id, [(name, infinite[over]), (name, infinite[id])], breaks=breaks)
     return panel._replace(curves=(*panel.curves, samples.curve(name, *samples.values)))
 
 
@@ -356,33 +367,41 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
     Raises UsageError for a picture that does not exist, or that this machine does not have, NoSolutionError where the
     machine locks itself or stalls.
     """
-    name, cylinders = case.machine.name, [cylinder.drive.name for cylinder in case.cylinders]
+    machine = case.machine.name
     if options.cylinder:
-        if tuple(names) == ("throw-stress",):
-            cylinders += [throw.name for throw in case.stress.throws]
-        options = options._replace(cylinder=cylinder_meant(options.cylinder, cylinders))
-        if options.cylinder not in cylinders:
-            there = f"there is no '{text_in_one_line(options.cylinder or '')}'; there are {', '.join(cylinders)}"
-            raise UsageError(f"--cylinder: {there}")
+        options = options._replace(cylinder=_cylinder_meant(case, names, options.cylinder))
     if not names or "all" in names:
-        each = filter(None, (pictures_if_any(case, kind, options) for kind in PICTURES))
-        drawn = list(islice(each, None if names else 1))
-        if not drawn and not names:
-            raise UsageError(f"{name}: there is nothing to draw; kurbel check says what is missing")
-        yield from chain.from_iterable(drawn)
-        return
-    known = {kind.id: kind for kind in PICTURES}
-    for id in names:
-        found = _drawn(case, known[id], options) if id in known else []
-        if not found:
-            wrong = f"no picture '{text_in_one_line(id)}'{did_you_mean(id, tuple(known))}"
-            wrong = (
-                f"{name} has no picture '{id}': what it shows is left out" if id in known else wrong
-            )
+        drawn = filter(None, (pictures_if_any(case, kind, options) for kind in PICTURES))
+        chosen = list(drawn if names else islice(drawn, 1))
+        if not chosen and not names:
             raise UsageError(
-                f"{wrong} ({name} has {', '.join(kind.id for kind in pictures_of(case, options))})"
+                f"{machine}: there is nothing to draw; kurbel check says what is missing"
             )
-        yield from found
+        yield from chain.from_iterable(chosen)
+        return
+    kinds = {kind.id: kind for kind in PICTURES}
+    for id in names:
+        of_kind = _drawn(case, kinds[id], options) if id in kinds else []
+        if not of_kind:
+            wrong = f"no picture '{text_in_one_line(id)}'{did_you_mean(id, tuple(kinds))}"
+            if id in kinds:
+                wrong = f"{machine} has no picture '{id}': what it shows is left out"
+            listed = ", ".join(kind.id for kind in pictures_of(case, options))
+            raise UsageError(f"{wrong} ({machine} has {listed})")
+        yield from of_kind
+
+
+def _cylinder_meant(case: Case, names: Sequence[str], cylinder: str) -> str:
+    """Return the name of the cylinder or throw that `--cylinder` means. Raises UsageError where there is none."""
+    listed = [forces.drive.name for forces in case.cylinders]
+    if tuple(names) == ("throw-stress",):
+        listed += [throw.name for throw in case.stress.throws]
+    name = cylinder_meant(cylinder, listed)
+    if name not in listed:
+        raise UsageError(
+            f"--cylinder: there is no '{text_in_one_line(name)}'; there are {', '.join(listed)}"
+        )
+    return name
 
 
 def pictures_if_any(case: Case, kind: PictureKind, options: PictureOptions) -> list[Picture]:
@@ -405,56 +424,56 @@ def pictures_of(case: Case, options: PictureOptions) -> list[PictureKind]:
     return [kind for kind in PICTURES if has(kind)]
 
 
-@np.errstate(all="ignore")
 def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> list[Picture]:
-    found = []
+    """Return the pictures of a kind, one for each cylinder or bearing that differs."""
+    drawn = []
+    machine = case.machine.name
     for source, name in _sources(case, kind, options):
-        if panels := tuple(in_units(panel, options.system) for panel in kind.panels(source)):
+        panels = tuple(in_units(panel, options.system) for panel in kind.panels(source))
+        if panels:
             across = min(kind.across, len(panels))
-            found.append(
-                Picture(kind.id, kind.title, kind.text, panels, case.machine.name, name, across)
-            )
-    return found
+            drawn.append(Picture(kind.id, kind.title, kind.text, panels, machine, name, across))
+    return drawn
 
 
 def _sources(
     case: Case, kind: PictureKind, options: PictureOptions
 ) -> Iterator[tuple[Source, str]]:
     """Yield (source of a picture, name of its cylinder or bearing); identical ones are drawn once."""
-    command, wanted = (
-        kind.command,
-        [
-            cylinder
-            for cylinder in case.cylinders
-            if options.cylinder in (None, cylinder.drive.name)
-        ],
-    )
+    command, name = kind.command, options.cylinder
     if not command:
-        yield (
-            Source((case, wanted), options.angles),
-            (len(case.cylinders) > 1 and options.cylinder) or "",
-        )
+        chosen = [forces for forces in case.cylinders if name in (None, forces.drive.name)]
+        is_named = len(case.cylinders) > 1 and bool(name)
+        yield Source((case, chosen), options.angles), (name or "") if is_named else ""
     elif command == "torsion":
         yield Source(case.torsion, options.angles), ""
     elif command == "stress":
         throw = case.stress.worst
         for other in case.stress.throws:
-            if options.cylinder in (other.name, *(forces.drive.name for forces in other.rods)):
+            if name in (other.name, *(forces.drive.name for forces in other.rods)):
                 throw = other
         yield Source(throw, options.angles), "" if case.stress.only else throw.name
-    elif command not in _OF_PARTS:
-        having = [one.results for one in subjects_of(case, command) if one.results]
-        yield Source(having[-1], options.angles), ""
+    elif command in _OF_PARTS:
+        yield from _sources_of_parts(case, command, options)
     else:
-        for one in wanted if command == "forces" else ():
-            one.refuse_locking()
-        for equal in equal_parts(subjects_of(case, command), command):
-            named = [
-                one
-                for one in equal
-                if command == "bearings" or options.cylinder in (None, one.name)
-            ]
-            if named:
-                several = command == "bearings" or len(case.cylinders) > 1
-                names = together([one.name for one in named]) if several else ""
-                yield Source(named[0].results, options.angles), names
+        with_results = [subject for subject in subjects_of(case, command) if subject.results]
+        yield Source(with_results[-1].results, options.angles), ""
+
+
+def _sources_of_parts(
+    case: Case, command: str, options: PictureOptions
+) -> Iterator[tuple[Source, str]]:
+    """Yield (source, name) for each cylinder or bearing of a command that differs from those before it."""
+    name = options.cylinder
+    if command == "forces":
+        for forces in case.cylinders:
+            if name in (None, forces.drive.name):
+                forces.refuse_locking()
+    are_bearings = command == "bearings"
+    are_several = are_bearings or len(case.cylinders) > 1
+    parts = [subject for subject in subjects_of(case, command) if not subject.whole]
+    for group in equal_parts(parts, command):
+        chosen = [subject for subject in group if are_bearings or name in (None, subject.name)]
+        if chosen:
+            names = together([subject.name for subject in chosen]) if are_several else ""
+            yield Source(chosen[0].results, options.angles), names

@@ -25,6 +25,7 @@ from kurbel.pictures.train import (
     members,
     throw,
 )
+from kurbel.solver.forces import CylinderForces
 
 _STILL = 60.0
 """Crank angle in degrees at which a machine is shown at rest where nothing pushes it."""
@@ -46,21 +47,30 @@ _LETTER = 0.6
 
 def mechanism(source: Source) -> Iterator[Panel]:
     """The machine in section; gas and liquid are tinted by their pressure, forces on a single cylinder are arrows."""
-    case, drawn = source.results
-    if not drawn or any(one.drive.mechanism.sketch(CrankAngle.of(0.0)) is None for one in drawn):
+    case, cylinders = source.results
+    if not cylinders or any(_has_no_sketch(forces) for forces in cylinders):
         return
-    alone, first = len(drawn) == 1, drawn[0]
-    moments = np.array(source.angles or ())[:, None]
+    is_alone = len(cylinders) == 1
     if source.angles is None:
         # it rests where the tangential force of the first cylinder is largest
-        largest = Source(first, None).extreme("T_max")
-        rest = largest.degrees + first.drive.lag * (not alone) if largest else _STILL
-        turning = np.arange(MOMENTS_PER_TURN * case.machine.revolutions) * 360.0 / MOMENTS_PER_TURN
-        moments = np.append(rest, turning)[None]
-    for degrees in moments:
-        trains = [Train(case.machine, one, degrees, alone) for one in drawn]
-        title = f"φ = {round(float(degrees[0]), 6 if source.angles else 2):.9g}°"
+        largest = Source(cylinders[0], None).extreme("T_max")
+        rest = _STILL
+        if largest:
+            lag = cylinders[0].drive.lag
+            rest = largest.degrees + (0.0 if is_alone else lag)
+        moments = np.arange(MOMENTS_PER_TURN * case.machine.revolutions)
+        drawn = [np.append(rest, moments * 360.0 / MOMENTS_PER_TURN)]
+    else:
+        drawn = [np.array([angle]) for angle in source.angles]
+    for degrees in drawn:
+        trains = [Train(case.machine, forces, degrees, is_alone) for forces in cylinders]
+        decimals = 6 if source.angles else 2
+        title = f"φ = {round(float(degrees[0]), decimals):.9g}°"
         yield _panel(case.machine, trains)._replace(title=title)
+
+
+def _has_no_sketch(forces: CylinderForces) -> bool:
+    return forces.drive.mechanism.sketch(CrankAngle.of(0.0)) is None
 
 
 # the views
@@ -68,37 +78,42 @@ def mechanism(source: Source) -> Iterator[Panel]:
 
 def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     """Return all views with their texts."""
-    first, angle, mirrored = trains[0], _drawn_angle(trains), machine.rotation == "under"
-    # the first cylinder of each stroke line, which is in front of those behind it; a yoke is in front of its crank
-    front = list({round(train.angle % 360.0, 6): train for train in reversed(trains)}.values())
+    first, angle = trains[0], _drawn_angle(trains)
+    mirrored = machine.rotation == "under"
     R, (wheel, depth, look) = first.R, _wheel(machine, first.R)
-    bodies = [
-        Body.of([disc("axis", R), *(disc(look, one) for one in (wheel, wheel - depth) if one > 0)])
-    ]
-    for parts in (cranks, cylinders, members) if first.has_slot else (cylinders, cranks, members):
-        bodies += [body.seen(one.angle) for one in front for body in parts(one)]
+    # the first cylinder of each stroke line is in front of those behind it
+    front = list({round(train.angle % 360.0, 6): train for train in reversed(trains)}.values())
+
+    discs = [disc("axis", R)]
+    discs += [disc(look, radius) for radius in (wheel, wheel - depth) if radius > 0]
+    bodies = [Body.of(discs)]
+    # a yoke is in front of its crank
+    layers = (cranks, cylinders, members) if first.has_slot else (cylinders, cranks, members)
+    for layer in layers:
+        for train in front:
+            bodies += [body.seen(train.angle) for body in layer(train)]
     bodies = [body.seen(angle, mirrored) for body in bodies]
 
     row, captions, arrows = _row(trains), list[Caption](), list[Curve]()
     if row:
-        level = abs(math.sin(math.radians(angle))) < _LEVEL
-        side, captions = _from_the_side(
-            row, 0.0 if machine.locomotive else wheel, look, _bounds(bodies), level
-        )
+        is_level = abs(math.sin(math.radians(angle))) < _LEVEL
+        radius = 0.0 if machine.locomotive else wheel
+        side, captions = _from_the_side(row, radius, look, _bounds(bodies), is_level)
         bodies += side
     elif len(trains) > 1:
-        for one in front:
-            outward = np.exp(1j * np.radians(angle - one.angle if mirrored else angle + one.angle))
-            place = outward * (one.outer_end + _LETTER * R)
-            captions.append(
-                Caption(str(trains.index(one) + 1), place, 0.4 * _LETTER * R, strong=True)
-            )
+        for train in front:
+            degrees = angle - train.angle if mirrored else angle + train.angle
+            outward = np.exp(1j * np.radians(degrees))
+            centre = outward * (train.outer_end + _LETTER * R)
+            number = str(trains.index(train) + 1)
+            captions.append(Caption(number, centre, 0.4 * _LETTER * R, strong=True))
     else:
-        arrows = [*_arrows(first, angle, mirrored)]
+        arrows = list(_arrows(first, angle, mirrored))
+
     left, right, bottom, top = _bounds(bodies, arrows)
-    room = 0.4 * R if arrows else 0.0
+    room = 0.4 * R if arrows else 0.0  # for the names of forces
     return Panel(
-        Axis(NO_NAME, "length", low=left - room, high=right + room),  # room for the names of forces
+        Axis(NO_NAME, "length", low=left - room, high=right + room),
         Axis(NO_NAME, "length", low=bottom - room, high=top + room),
         tuple(arrows),
         equal=True,
@@ -119,8 +134,9 @@ def _drawn_angle(trains: Sequence[Train]) -> float:
     banks = sorted({train.angle for train in trains})
     if banks[-1] - banks[0] > 180.0:  # a radial engine
         return 90.0
-    upright = len(banks) > 1 or not first.crosshead or len(trains) > 2
-    return 90.0 - sum(banks) / len(banks) if upright else 0.0
+    is_upright = len(banks) > 1 or not first.crosshead or len(trains) > 2
+    middle = sum(banks) / len(banks)
+    return 90.0 - middle if is_upright else 0.0
 
 
 def _row(trains: Sequence[Train]) -> dict[float, Train]:
@@ -129,19 +145,20 @@ def _row(trains: Sequence[Train]) -> dict[float, Train]:
     Places are those of the file if the cylinders then neither overlap nor are far apart.
     """
     banks = {round(train.angle % 360.0, 6) for train in trains}
-    if len(banks) == len(trains) or not all(
-        train.is_engine and not train.has_slot for train in trains
-    ):
+    are_engines = all(train.is_engine and not train.has_slot for train in trains)
+    if len(banks) == len(trains) or not are_engines:
         return {}
     widest = max(barrel.bore for train in trains for barrel in train.barrels)
-    given = {
-        place: train for train in trains if (place := train.cylinder.axial_position) is not None
-    }
-    if len(given) == len(trains) and all(
-        _LEAST <= one / widest <= _MOST for one in np.diff(sorted(given))
-    ):
-        return dict(sorted(given.items()))
-    return {_PITCH * widest * number: one for number, one in enumerate(trains)}
+    of_file = {}
+    for train in trains:
+        if train.cylinder.axial_position is not None:
+            of_file[train.cylinder.axial_position] = train
+    positions = sorted(of_file)
+    distances = np.diff(positions) / widest
+    fits = bool(np.all((distances >= _LEAST) & (distances <= _MOST)))
+    if len(of_file) == len(trains) and fits:
+        return {position: of_file[position] for position in positions}
+    return {_PITCH * widest * number: train for number, train in enumerate(trains)}
 
 
 def _from_the_side(
@@ -152,26 +169,38 @@ def _from_the_side(
     wheel: its radius in m, or 0; along: left, right, bottom and top of the view along the shaft. In the coordinates of
     the side view the shaft is along −y, on the page downward or to the right.
     """
-    places, first = list(row), next(iter(row.values()))
-    half, bore = float(min(np.diff(places))) / 2, min(one.barrels[0].bore for one in row.values())
-    end, em, turn = -places[-1] - half, _LETTER * first.R, 1.0 if level else 1j
-    on_shaft = [box("metal", -first.journal, first.journal, half - places[0], end)]
-    on_shaft += [box(look, -wheel, wheel, end, end - half / 2)] if wheel else []
-    side, captions = [Body.of(on_shaft).seen(0.0 if level else 90.0)], list[Caption]()
-    for number, (place, one) in enumerate(row.items(), 1):
-        bodies = *cylinders(one), *throw(one, bore)
-        side += [body.seen(0.0 if level else 90.0, moved=-1j * turn * place) for body in bodies]
-        above, below = one.outer_end + em, -1.5 * one.R - (2.5 if level else 0.8) * em
-        captions.append(Caption(str(number), turn * complex(above, -place), 0.4 * em, strong=True))
-        lag = f"{one.results.drive.lag % 360:.4g}°"
-        captions.append(Caption(lag, turn * complex(below, -place), 0.4 * em * len(lag)))
+    positions = list(row)
+    first = row[positions[0]]
+    half = float(min(np.diff(positions))) / 2
+    bore = min(train.barrels[0].bore for train in row.values())
+    degrees, turn = (0.0, 1.0) if level else (90.0, 1j)
 
+    # the shaft, with its wheel at the end
+    end = -positions[-1] - half
+    shaft = [box("metal", -first.journal, first.journal, half - positions[0], end)]
+    if wheel:
+        shaft.append(box(look, -wheel, wheel, end, end - half / 2))
+    side = [Body.of(shaft).seen(degrees)]
+
+    # each cylinder with its throw, its number above and its angle below
+    em = _LETTER * first.R
+    captions = []
+    for number, (position, train) in enumerate(row.items(), 1):
+        for body in (*cylinders(train), *throw(train, bore)):
+            side.append(body.seen(degrees, moved=-1j * turn * position))
+        above = turn * complex(train.outer_end + em, -position)
+        below = turn * complex(-1.5 * train.R - (2.5 if level else 0.8) * em, -position)
+        captions.append(Caption(str(number), above, 0.4 * em, strong=True))
+        lag = f"{train.cylinder.crank_position % 360:.4g}°"
+        captions.append(Caption(lag, below, 0.4 * em * len(lag)))
+
+    # next to the view along the shaft
     left, right, _, top = _bounds(side)
-    moved = (
-        1j * (along[2] - top - 0.1 * (along[3] - along[2]))
-        if level
-        else along[1] - left + 0.06 * (right - left)
-    )
+    _, along_right, along_bottom, along_top = along
+    if level:
+        moved = 1j * (along_bottom - top - 0.1 * (along_top - along_bottom))
+    else:
+        moved = along_right - left + 0.06 * (right - left)
     captions = [caption._replace(place=caption.place + moved) for caption in captions]
     return [body.seen(0.0, moved=moved) for body in side], captions
 
@@ -180,9 +209,10 @@ def _bounds(
     bodies: Sequence[Body], arrows: Sequence[Curve] = ()
 ) -> tuple[float, float, float, float]:
     """Return left, right, bottom and top of all positions of the bodies and arrows."""
-    every = [line.ravel() for body in bodies for _, line in body.outlines()]
-    drawn = np.concatenate([*every, *((arrow.x + 1j * arrow.y).ravel() for arrow in arrows)])
-    return drawn.real.min(), drawn.real.max(), drawn.imag.min(), drawn.imag.max()
+    lines = [line.ravel() for body in bodies for _, line in body.outlines()]
+    lines += [(arrow.x + 1j * arrow.y).ravel() for arrow in arrows]
+    points = np.concatenate(lines)
+    return points.real.min(), points.real.max(), points.imag.min(), points.imag.max()
 
 
 def _wheel(machine: Machine, crank: float) -> tuple[float, float, str]:
@@ -191,14 +221,17 @@ def _wheel(machine: Machine, crank: float) -> tuple[float, float, str]:
     if locomotive and locomotive.wheel_diameter:
         return locomotive.wheel_diameter / 2, 0.035 * locomotive.wheel_diameter, "thin"
     if flywheel and flywheel.rim:
-        return (flywheel.rim.mean_diameter + flywheel.rim.depth) / 2, flywheel.rim.depth, "thin"
-    guessed = flywheel or (shaft and shaft.flywheel_mass)
-    return (_WHEEL * crank, 0.12 * _WHEEL * crank, "guess") if guessed else (0.0, 0.0, "")
+        rim = flywheel.rim
+        return (rim.mean_diameter + rim.depth) / 2, rim.depth, "thin"
+    if flywheel or (shaft and shaft.flywheel_mass):
+        return _WHEEL * crank, 0.12 * _WHEEL * crank, "guess"
+    return 0.0, 0.0, ""
 
 
 def _footnote(trains: Sequence[Train], row: dict[float, Train], wheel: str, behind: int) -> str:
     """Return the note on what is to scale, and what is assumed; behind: number of cylinders behind others."""
-    first, shares, hidden = trains[0], list[str](), list[str]()
+    first = trains[0]
+    shares, hidden = list[str](), list[str]()
     scale = "all lengths between pins"
     if first.is_engine:
         scale, barrel = "crank, rod, stroke, offset, angles", first.barrels[0]
@@ -207,7 +240,7 @@ def _footnote(trains: Sequence[Train], row: dict[float, Train], wheel: str, behi
         else:
             shares.append(f"bore ({BORE:g} strokes)")
         shares.append(f"piston ({barrel.height / barrel.bore:.2g} bores high)")
-    if any(one.cylinder.axial_position != place for place, one in row.items()):
+    if any(train.cylinder.axial_position != position for position, train in row.items()):
         shares.append("distances of cylinders")
     if wheel == "guess":
         shares.append(f"flywheel ({_WHEEL:g} cranks)")
@@ -223,12 +256,12 @@ def _footnote(trains: Sequence[Train], row: dict[float, Train], wheel: str, behi
 
 
 class _Arrow(NamedTuple):
-    """Where the arrow of a force lies at crank angles (n,): from a place in m away from the members.
+    """Where the arrow of a force lies at crank angles (n,): its tail in m, clear of the members.
 
-    direction: that of a positive force; away: to which side the arrow reaches from the place, whatever its direction.
+    direction: that of a positive force; away: to which side the arrow reaches from its tail, whatever its direction.
     """
 
-    place: ComplexArray
+    tail: ComplexArray
     direction: ComplexArray
     away: ComplexArray
 
@@ -238,37 +271,48 @@ def _acting(train: Train) -> dict[str, _Arrow]:
     sketch, R, gap = train.sketch, train.R, 0.12 * train.R
 
     def joint(name: str) -> ComplexArray:
-        places = train.joints[name]
-        return np.append(places[:1], np.resize(places[1:], len(train.cycle) - 1))
+        points = train.joints[name]
+        return np.append(points[:1], np.resize(points[1:], len(train.cycle) - 1))
 
     # opposite the rod, on the other side of the pin or of the shaft; T and D are 0 where the side changes
     pin, outward = joint(PIN), np.exp(1j * np.radians(train.cycle))
-    rod = next((joint(end) - pin for start, end in sketch.links if start == PIN), -outward)
-    behind, beside = (
-        (direction * rod.conj()).real > _CLEAR * R for direction in (outward, 1j * outward)
-    )
-    off, tangent = EYE * train.pin + gap, 1j * outward
-    T_away, D_away = np.where(beside, -tangent, tangent), np.where(behind, -outward, outward)
-    acting = {"T": _Arrow(pin + off * T_away, tangent, T_away)}
-    acting["D"] = _Arrow(
-        np.where(behind, (train.weight + gap) * D_away, pin + off * D_away), -outward, D_away
-    )
+    rod = -outward
+    for start, end in sketch.links:
+        if start == PIN:
+            rod = joint(end) - pin
+            break
+    tangent = 1j * outward
+    is_behind = (outward * rod.conj()).real > _CLEAR * R
+    is_beside = (tangent * rod.conj()).real > _CLEAR * R
+    off = EYE * train.pin + gap
+    T_away = np.where(is_beside, -tangent, tangent)
+    D_away = np.where(is_behind, -outward, outward)
+    D_tail = np.where(is_behind, (train.weight + gap) * D_away, pin + off * D_away)
+    acting = {
+        "T": _Arrow(pin + off * T_away, tangent, T_away),
+        "D": _Arrow(D_tail, -outward, D_away),
+    }
 
     if sketch.toward:
         # beside the output, or beside the yoke
-        output, toward = (
-            joint(sketch.output) - 2.0 * R * train.has_slot,
-            np.full(len(pin), complex(*sketch.toward)),
-        )
-        clear = train.yoke + gap if train.yoke else 4.8 * train.pin
-        if train.is_engine and not train.yoke:
-            clear = (
-                1.5 * SHOE * R if train.crosshead else (0.5 + 2.2 * WALL) * train.barrels[0].bore
-            )
+        output = joint(sketch.output) - 2.0 * R * train.has_slot
+        toward = np.full(len(pin), complex(*sketch.toward))
         across = 1j * toward
+        clear = _clear_of_output(train, gap)
         acting["P"] = _Arrow(output - across * (clear + gap), toward, toward)
         acting["N"] = _Arrow(output + across * clear, across, across)
     return acting
+
+
+def _clear_of_output(train: Train, gap: float) -> float:
+    """Return the distance of an arrow from the stroke line that is clear of yoke, crosshead or piston, in m."""
+    if train.yoke:
+        return train.yoke + gap
+    if not train.is_engine:
+        return 4.8 * train.pin
+    if train.crosshead:
+        return 1.5 * SHOE * train.R
+    return (0.5 + 2.2 * WALL) * train.barrels[0].bore
 
 
 def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
@@ -282,10 +326,13 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
     for id, force in zip(ids, source.values(lines, train.cycle)):
         if np.abs(force).max() < _VANISHING * largest and len(force) > 1:
             continue
-        place, direction, away = acting[id]
+        tail, direction, away = acting[id]
         arrow = direction * force * (_LONGEST * train.R / largest)
-        tail = place - np.where((arrow * away.conj()).real < 0, arrow, 0.0)
-        ends = np.stack((tail, tail + arrow), axis=1)
-        ends = (ends.conj() if mirrored else ends) * np.exp(1j * np.radians(angle))
+        points_back = (arrow * away.conj()).real < 0
+        start = tail - np.where(points_back, arrow, 0.0)
+        ends = np.stack((start, start + arrow), axis=1)
+        if mirrored:
+            ends = ends.conj()
+        ends = ends * np.exp(1j * np.radians(angle))
         shown = ends if len(ends) > 1 else ends[0]
         yield Curve(source.words(id), shown.real, shown.imag, "force")

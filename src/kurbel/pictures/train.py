@@ -66,47 +66,56 @@ class Train:
     def __init__(
         self, machine: Machine, results: CylinderForces, degrees: Array, alone: bool
     ) -> None:
-        self.results, self.cylinder, mechanism = (
-            results,
-            results.drive.cylinder,
-            results.drive.mechanism,
-        )
-        own = degrees if alone else degrees - results.drive.lag
-        self.cycle = own[: 1 + MOMENTS_PER_TURN * CYCLES[machine.cycle_of(self.cylinder)]]
-        self.motion = own[: 1 + MOMENTS_PER_TURN]
+        self.results = results
+        self.cylinder = results.drive.cylinder
+        self.mechanism = results.drive.mechanism
+        crank_angles = degrees if alone else degrees - results.drive.lag
+        turns = CYCLES[machine.cycle_of(self.cylinder)]
+        self.cycle = crank_angles[: 1 + MOMENTS_PER_TURN * turns]
+        self.motion = crank_angles[: 1 + MOMENTS_PER_TURN]
         self.angle = 0.0 if alone else self.cylinder.bank_angle
-        sketch = mechanism.sketch(CrankAngle.of(self.motion))
+        sketch = self.mechanism.sketch(CrankAngle.of(self.motion))
         assert sketch is not None
-        self.mechanism, self.sketch = mechanism, sketch
+        self.sketch = sketch
         self.joints: dict[str, ComplexArray] = {
             name: np.atleast_1d(np.asarray(x) + 1j * np.asarray(y))
             for name, (x, y) in sketch.joints.items()
         }
-        self.R, shaft = mechanism.crank, machine.crankshaft
+
+        # radii of crank, pin, journal and counterweight
+        shaft = machine.crankshaft
+        self.R = self.mechanism.crank
         self.pin = shaft.pin_diameter / 2 if shaft else _PIN * self.R
-        self.journal = (
-            shaft.journal_diameter / 2 if shaft and shaft.journal_diameter else _JOURNAL * self.R
-        )
+        self.journal = _JOURNAL * self.R
+        if shaft and shaft.journal_diameter:
+            self.journal = shaft.journal_diameter / 2
         self.has_counterweight = bool(machine.counterweights or self.cylinder.counterweights)
         hub = _HUB * self.journal
         self.weight = max(_WEIGHT * self.R, hub) if self.has_counterweight else hub
 
-        self.is_engine = bool(mechanism.slides) and not mechanism.quick_return
+        # what kind of engine it is
+        self.is_engine = bool(self.mechanism.slides) and not self.mechanism.quick_return
         self.has_slot = self.is_engine and bool(sketch.blocks)
-        framed = self.is_engine and not mechanism.guided
-        self.yoke = self.R * (1.6 if self.has_slot else 1.8 if framed else 0.0)
-        masses, pistons = self.cylinder.masses, self.cylinder.pistons
-        piston_rod = any(
-            piston.crank_end_rod or "crank_end" in piston.chambers for piston in pistons
-        )
+        self.yoke = 0.0
+        if self.has_slot:
+            self.yoke = 1.6 * self.R
+        elif self.is_engine and not self.mechanism.guided:
+            self.yoke = 1.8 * self.R
+        has_crosshead_mass = bool(self.cylinder.masses and self.cylinder.masses.crosshead)
         self.crosshead = bool(
-            self.yoke or piston_rod or machine.locomotive or (masses and masses.crosshead)
+            self.yoke or self._has_piston_rod or machine.locomotive or has_crosshead_mass
         )
-        lever = self.joints[sketch.links[-1][0]]
-        self.forked = (
-            bool(sketch.output)
-            and not self.is_engine
-            and np.allclose((self.output - lever).imag, 0.0)
+        self.forked = False
+        if sketch.output and not self.is_engine:
+            lever = self.joints[sketch.links[-1][0]]
+            self.forked = bool(np.allclose((self.output - lever).imag, 0.0))
+
+    @property
+    def _has_piston_rod(self) -> bool:
+        """Whether a rod goes through the cover on the side of the shaft."""
+        return any(
+            piston.crank_end_rod or "crank_end" in piston.chambers
+            for piston in self.cylinder.pistons
         )
 
     @property
@@ -122,10 +131,13 @@ class Train:
     @property
     def head(self) -> tuple[float, float]:
         """How far what is on the piston rod at the crosshead reaches from the output, toward the shaft and outward."""
-        half, slot = SHOE * self.R, float((self.joints[PIN] - self.output).real[0])
+        half = SHOE * self.R
         if self.has_slot:
+            slot = float((self.joints[PIN] - self.output).real[0])
             return slot - half, slot + half
-        return (-self.mechanism.rod_length - 2.6 * self.R if self.yoke else -half), half
+        if self.yoke:
+            return -self.mechanism.rod_length - 2.6 * self.R, half
+        return -half, half
 
     @cached_property
     def barrels(self) -> tuple[Barrel, ...]:
@@ -133,35 +145,54 @@ class Train:
         if not self.is_engine:
             return ()
         (near, _), (far, _) = self.sketch.guides[0]
-        inner, outer = near + self.head[0], far + self.head[1]  # of what is on the rod already
-        stroke, found, every = self.mechanism.stroke, list[Barrel](), self.results.drive.gas
-        for piston in self.cylinder.pistons or (Piston(BORE * stroke),):
+        # the ends of what is on the rod already
+        inner, outer = near + self.head[0], far + self.head[1]
+        barrels = list[Barrel]()
+        for piston in self.cylinder.pistons or (Piston(BORE * self.mechanism.stroke),):
             if piston.lever_ratio != 1:
                 continue
-            gas, bore = next((one for one in every if one.piston is piston), None), piston.bore
-            closed, topped = (bool(gas.crank), bool(gas.head)) if gas else (self.crosshead, True)
-            trunk = not found and not self.crosshead
-            height = (_TRUNK if trunk else _DISC if closed else _PLUNGER) * bore
-            gaps = (
-                [volume / area for volume, area in zip(gas.clearance_volumes, gas.areas)]
-                if gas
-                else [0.0, 0.0]
-            )
-            above, below = (height / 2 + (gap or _CLEARANCE * stroke) for gap in gaps)
-            below = below if closed else 0.28 * height  # a liner that is open ends above the skirt
-            room = 0.12 * self.R + _GLAND * _COVER * bore
-            rods = piston.crank_end_rod / 2, piston.head_end_rod / 2
-            if trunk:
-                shift, rods = 0.08 * height, (0.0, 0.0)
-            elif found and self.yoke:
-                shift, rods = inner - room - above - far, (0.0, max(rods) or _ROD * bore)
-            else:
-                shift, rods = outer + room + below - near, (rods[0] or _ROD * bore, rods[1])
-            faces = near + shift - below, far + shift + above
-            covers = faces[0] - _COVER * bore * closed, faces[1] + _COVER * bore * topped
-            found.append(Barrel(gas, bore, height, shift, faces, covers, rods))
-            inner, outer = min(inner, found[-1].glands[0]), max(outer, found[-1].glands[1])
-        return tuple(found)
+            barrel = self._barrel(piston, inner, outer, is_first=not barrels)
+            barrels.append(barrel)
+            inner, outer = min(inner, barrel.glands[0]), max(outer, barrel.glands[1])
+        return tuple(barrels)
+
+    def _barrel(self, piston: Piston, inner: float, outer: float, is_first: bool) -> Barrel:
+        """Return the cylinder of a piston, next to what reaches from `inner` to `outer` on the rod."""
+        (near, _), (far, _) = self.sketch.guides[0]
+        bore = piston.bore
+        gas = next((gas for gas in self.results.drive.gas if gas.piston is piston), None)
+        has_cover_below = bool(gas.crank) if gas else self.crosshead
+        has_cover_above = bool(gas.head) if gas else True
+        is_trunk = is_first and not self.crosshead
+
+        # the piston, and its gaps to the covers in the dead centres
+        share = _DISC if has_cover_below else _PLUNGER
+        height = (_TRUNK if is_trunk else share) * bore
+        gaps = [0.0, 0.0]
+        if gas:
+            gaps = [float(volume / area) for volume, area in zip(gas.clearance_volumes, gas.areas)]
+        least = _CLEARANCE * self.mechanism.stroke
+        above, below = (height / 2 + (gap or least) for gap in gaps)
+        if not has_cover_below:  # a liner that is open ends above the skirt
+            below = 0.28 * height
+
+        # where it is on the rod, and radii of the rods to its sides
+        room = 0.12 * self.R + _GLAND * _COVER * bore
+        crank_end_rod, head_end_rod = piston.crank_end_rod / 2, piston.head_end_rod / 2
+        if is_trunk:
+            shift, rods = 0.08 * height, (0.0, 0.0)
+        elif not is_first and self.yoke:
+            shift = inner - room - above - far
+            rods = (0.0, max(crank_end_rod, head_end_rod) or _ROD * bore)
+        else:
+            shift = outer + room + below - near
+            rods = (crank_end_rod or _ROD * bore, head_end_rod)
+        faces = near + shift - below, far + shift + above
+        covers = (
+            faces[0] - _COVER * bore * has_cover_below,
+            faces[1] + _COVER * bore * has_cover_above,
+        )
+        return Barrel(gas, bore, height, shift, faces, covers, rods)
 
     def is_crank(self, link: tuple[str, ...]) -> bool:
         """Whether a member from a pin to the frame turns on and on as the crank does."""
@@ -177,7 +208,8 @@ def _polygon(look: str, *corners: complex) -> Shape:
 
 def box(look: str, left: float, right: float, top: float, bottom: float | None = None) -> Shape:
     """Return a rectangle, on the stroke line if its bottom is not given."""
-    low, high = 1j * (-top if bottom is None else bottom), 1j * top
+    low = 1j * (-top if bottom is None else bottom)
+    high = 1j * top
     return _polygon(look, left + low, right + low, right + high, left + high)
 
 
@@ -193,8 +225,8 @@ def _both(look: str, left: float, right: float, near: float, far: float) -> list
 
 def _directions(vectors: ComplexArray) -> Array:
     """Return the directions of vectors in degrees, at rest and through a turn without a jump."""
-    found = np.angle(vectors)
-    return np.degrees(np.append(found[:1], np.unwrap(found[1:])))
+    angles = np.angle(vectors)
+    return np.degrees(np.append(angles[:1], np.unwrap(angles[1:])))
 
 
 # cylinders and what reciprocates in them
@@ -225,22 +257,20 @@ def _chambers(train: Train, barrel: Barrel) -> Iterator[Body]:
         return
     # a picture at one angle has the tints of the moving one
     angles = np.append(train.cycle, np.arange(0.0, train.results.drive.cycle, 5.0))
-    state, ends = (
-        train.results.at(angles),
-        [*zip((gas.crank, gas.head), barrel.faces, (0.0, 180.0))],
-    )
-    pressures = np.array(
-        [np.broadcast_to(state.pressure(end), angles.shape) for end, _, _ in ends if end]
-    )
+    state = train.results.at(angles)
+    faces, pressures = list[tuple[float, float]](), []
+    for end, face, turn in zip((gas.crank, gas.head), barrel.faces, (0.0, 180.0)):
+        if end:
+            faces.append((face, turn))
+            pressures.append(np.broadcast_to(state.pressure(end), angles.shape))
+
     # a pump has one pressure on each stroke
-    pumped = bool(gas.work < 0) and all(
-        len(set(np.round(pressure).tolist())) <= 2 for pressure in pressures
-    )
-    tints = 0.08 + 0.72 * ((pressures - pressures.min()) / (np.ptp(pressures) or 1.0)) ** 0.7
-    shape = box("liquid" if pumped else "gas", 0.0, 1.0, barrel.bore / 2)
-    for (face, turn), tint in zip(
-        [one[1:] for one in ends if one[0]], tints[:, : len(train.cycle)]
-    ):
+    levels = [set(np.round(pressure).tolist()) for pressure in pressures]
+    is_pump = bool(gas.work < 0) and all(len(values) <= 2 for values in levels)
+    shape = box("liquid" if is_pump else "gas", 0.0, 1.0, barrel.bore / 2)
+    rise = np.array(pressures) - np.min(pressures)
+    tints = 0.08 + 0.72 * (rise / (np.ptp(pressures) or 1.0)) ** 0.7
+    for (face, turn), tint in zip(faces, tints[:, : len(train.cycle)]):
         length = abs(train.output.real + barrel.shift - face) - barrel.height / 2
         yield Body.of([shape], face + 1j * train.mechanism.offset, turn, length, tint)
 
@@ -252,19 +282,22 @@ def _walls(barrel: Barrel) -> Iterator[Shape]:
     for face, cover, gland, rod in zip(barrel.faces, barrel.covers, barrel.glands, barrel.rods):
         if cover != face:
             yield box("wall", cover, face, half + 1.7 * wall)
-            yield from [box("wall", cover, gland, rod + 1.6 * wall)] if rod else ()
+            if rod:
+                yield box("wall", cover, gland, rod + 1.6 * wall)
 
 
 def _on_the_rod(train: Train) -> Iterator[Shape]:
     """Yield piston rods, pistons, and crosshead, yoke or frame, from the output of the mechanism."""
-    R, (left, right), start = train.R, train.head, train.head[0]
+    R, (left, right) = train.R, train.head
     (near, _), _ = train.sketch.guides[0]
+    start = left
     for barrel in train.barrels:
         inner, outer = barrel.rods
         if barrel.shift < 0:
             yield box("rod", barrel.shift, left, outer)
             continue
-        yield from [box("rod", start, barrel.shift, inner)] if inner else ()
+        if inner:
+            yield box("rod", start, barrel.shift, inner)
         start = barrel.shift
         if outer:  # out of its stuffing box
             yield box("rod", start, barrel.glands[1] + 0.1 * barrel.bore - near, outer)
@@ -273,28 +306,23 @@ def _on_the_rod(train: Train) -> Iterator[Shape]:
     if train.crosshead:
         yield box("metal", left, right, train.yoke or SHOE * R)
     if train.yoke:  # the pin of a rod is on solid ground
-        yield box(
-            "hollow",
-            left + 0.15 * R,
-            right - 0.15 * R if train.has_slot else -right,
-            train.yoke - 0.2 * R,
-        )
+        end = right - 0.15 * R if train.has_slot else -right
+        yield box("hollow", left + 0.15 * R, end, train.yoke - 0.2 * R)
 
 
 def _piston(barrel: Barrel) -> Iterator[Shape]:
     """Yield a piston with three rings, a trunk piston with its inside."""
-    half, bottom, crown = (
-        barrel.bore / 2,
-        barrel.shift - barrel.height / 2,
-        barrel.shift + barrel.height / 2,
-    )
+    half = barrel.bore / 2
+    bottom = barrel.shift - barrel.height / 2
+    crown = barrel.shift + barrel.height / 2
     yield box("metal", bottom, crown, half)
     if not any(barrel.rods):
         yield box("hollow", bottom, crown - 0.24 * barrel.height, 0.8 * half)
-    apart = min(0.06 * barrel.bore, barrel.height / 6)
-    first = crown - 1.3 * apart if barrel.covers[0] == barrel.faces[0] else barrel.shift + apart
-    for place in (first, first - apart, first - 2 * apart):
-        yield _polygon("thin", place - 1j * half, place + 1j * half)
+    spacing = min(0.06 * barrel.bore, barrel.height / 6)
+    is_open_below = barrel.covers[0] == barrel.faces[0]
+    first = crown - 1.3 * spacing if is_open_below else barrel.shift + spacing
+    for ring in (first, first - spacing, first - 2 * spacing):
+        yield _polygon("thin", ring - 1j * half, ring + 1j * half)
 
 
 # cranks and members
@@ -303,13 +331,11 @@ def _piston(barrel: Barrel) -> Iterator[Shape]:
 def cranks(train: Train) -> Iterator[Body]:
     """Yield the bearings on the frame, and what turns on and on with its counterweight."""
     sketch, joints = train.sketch, train.joints
-    foot = (
-        train.journal
-        * np.array([-0.8j, 2.6 - 2.0j, 2.6 + 2.0j, 0.8j])
-        * (-1.0 if sketch.output else -1j)
-    )
-    for name in () if train.is_engine else sketch.fixed:
-        yield Body.of([_polygon("wall", *foot)], joints[name][0])
+    if not train.is_engine:
+        turn = -1.0 if sketch.output else -1j
+        foot = train.journal * turn * np.array([-0.8j, 2.6 - 2.0j, 2.6 + 2.0j, 0.8j])
+        for name in sketch.fixed:
+            yield Body.of([_polygon("wall", *foot)], joints[name][0])
     for tip, centre in ((PIN, SHAFT), *filter(train.is_crank, sketch.links)):
         arm = joints[tip] - joints[centre]
         yield Body.of(_crank(train, float(abs(arm[0]))), joints[centre][0], _directions(arm))
@@ -336,53 +362,72 @@ def _crank(train: Train, R: float) -> Iterator[Shape]:
 def members(train: Train) -> Iterator[Body]:
     """Yield the members between the joints, blocks that slide on them, and the pins in front of them."""
     pin, sketch, joints = train.pin, train.sketch, train.joints
-    slotted = {link: joints[joint] for joint, link in sketch.blocks}
+    blocks = {link: joints[joint] for joint, link in sketch.blocks}
     for link in sketch.links[1:]:
         start, end = (joints[name] for name in link)
-        length, turn = float(abs(end - start)[0]), _directions(end - start)
-        if link in slotted:
-            reach = abs(slotted[link] - start)
-            far = max(length, float(reach.max()) + 2.4 * pin)
-            slot = box("hollow", float(reach.min()) - 1.8 * pin, far - 0.7 * pin, 1.05 * pin)
-            if not train.has_slot:
-                yield Body.of(
-                    [box("rod", 0.0, far, 1.9 * pin), disc("rod", 1.9 * pin), slot], start, turn
-                )
-            yield Body.of([box("metal", -1.7 * pin, 1.7 * pin, 1.05 * pin)], slotted[link], turn)
-        elif not (
-            train.has_slot or train.is_crank(link) or (train.forked and link[1] == sketch.output)
-        ):
-            inside = box("thin", EYE * pin, length - EYE * pin, 0.28 * pin)
-            eyes = disc("rod", EYE * pin), disc("rod", 1.25 * pin, length)
-            yield Body.of([box("rod", 0.0, length, 0.65 * pin), inside, *eyes], start, turn)
+        if link in blocks:
+            yield from _slotted(train, start, end, blocks[link])
+        elif not _is_hidden(train, link):
+            yield _rod(pin, start, end)
     if sketch.output and not train.is_engine:
         yield from _ram(train)
-    hidden = (SHAFT, sketch.output if train.forked else "")
-    for name in (PIN,) if train.has_slot else [one for one in joints if one not in hidden]:
+
+    # pins: of a yoke only that of the crank
+    no_pins = (SHAFT, sketch.output if train.forked else "")
+    with_pins = [PIN] if train.has_slot else [name for name in joints if name not in no_pins]
+    for name in with_pins:
         yield Body.of([disc("metal", 0.9 * pin), disc("web", 0.15 * pin)], joints[name])
+
+
+def _is_hidden(train: Train, link: tuple[str, ...]) -> bool:
+    """Return whether a link is no member of its own: a crank, a part of a yoke, or the fork of a ram."""
+    is_fork = train.forked and link[1] == train.sketch.output
+    return train.has_slot or train.is_crank(link) or is_fork
+
+
+def _rod(pin: float, start: ComplexArray, end: ComplexArray) -> Body:
+    """Return a rod with an eye at each joint."""
+    length = float(abs(end - start)[0])
+    shapes = [
+        box("rod", 0.0, length, 0.65 * pin),
+        box("thin", EYE * pin, length - EYE * pin, 0.28 * pin),
+        disc("rod", EYE * pin),
+        disc("rod", 1.25 * pin, length),
+    ]
+    return Body.of(shapes, start, _directions(end - start))
+
+
+def _slotted(
+    train: Train, start: ComplexArray, end: ComplexArray, block: ComplexArray
+) -> Iterator[Body]:
+    """Yield a lever with a slot, and the block in it; the slot of a yoke is drawn with the yoke."""
+    pin, turn = train.pin, _directions(end - start)
+    reach = abs(block - start)
+    if not train.has_slot:
+        far = max(float(abs(end - start)[0]), float(reach.max()) + 2.4 * pin)
+        slot = box("hollow", float(reach.min()) - 1.8 * pin, far - 0.7 * pin, 1.05 * pin)
+        lever = [box("rod", 0.0, far, 1.9 * pin), disc("rod", 1.9 * pin), slot]
+        yield Body.of(lever, start, turn)
+    yield Body.of([box("metal", -1.7 * pin, 1.7 * pin, 1.05 * pin)], block, turn)
 
 
 def _ram(train: Train) -> Iterator[Body]:
     """Yield the ram of a shaper between its guides, with a tool, and what hangs down to the lever, a fork or an eye."""
     pin, ((line, start), (_, end)) = train.pin, train.sketch.guides[0]
-    under, over, stroke = 1.6 * pin, 3.8 * pin, end - start
-    for at in (under - 0.5 * pin, over):
-        yield Body.of(
-            [
-                box(
-                    "wall",
-                    line + at,
-                    line + at + 0.5 * pin,
-                    start - 0.35 * stroke,
-                    end + 0.25 * stroke,
-                )
-            ]
-        )
+    under, over = 1.6 * pin, 3.8 * pin
+    stroke = end - start
+    left, right = start - 0.35 * stroke, end + 0.25 * stroke
+    for edge in (line + under - 0.5 * pin, line + over):
+        yield Body.of([box("wall", edge, edge + 0.5 * pin, left, right)])
+
     lever = train.joints[train.sketch.links[-1][0]]
     low = -float((train.output - lever).real.max()) if train.forked else 0.0
     tool = complex(2.0 * pin, 0.95 * stroke) + pin * np.array([0.0, 0.8 - 1.4j, -2.6 - 0.3j])
-    shapes = [_polygon("web", *tool), box("metal", under, over, -0.75 * stroke, 0.95 * stroke)]
-    shapes.append(box("metal", low - 1.8 * pin, under, 1.9 * pin))
+    shapes = [
+        _polygon("web", *tool),
+        box("metal", under, over, -0.75 * stroke, 0.95 * stroke),
+        box("metal", low - 1.8 * pin, under, 1.9 * pin),
+    ]
     if train.forked:
         shapes.append(box("hollow", low - 1.2 * pin, 0.9 * pin, 0.8 * pin))
     yield Body.of(shapes, train.output)

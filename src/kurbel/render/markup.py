@@ -109,13 +109,14 @@ class Html(Writer):
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return the beginning of a table, which can be scrolled in a narrow window."""
-        cells = (
-            f'<th scope="col"{_right(not one.words)}>{symbol}{f"<br><small>{unit}</small>" if unit else ""}</th>'
-            for one, (symbol, unit) in zip(table.columns, heads)
-        )
+        cells = []
+        for column, (symbol, unit) in zip(table.columns, heads):
+            below = f"<br><small>{unit}</small>" if unit else ""
+            cells.append(f'<th scope="col"{_right(not column.words)}>{symbol}{below}</th>')
         titled = f"<caption>{caption}</caption>" if caption else ""
+        label = caption or "values over the crank angle"
         return (
-            f'<div class="wide" tabindex="0" role="region" aria-label="{caption or "values over the crank angle"}">'
+            f'<div class="wide" tabindex="0" role="region" aria-label="{label}">'
             f"<table>{titled}\n"
             f"<thead><tr>{''.join(cells)}</tr></thead>\n<tbody>\n"
         )
@@ -123,15 +124,14 @@ class Html(Writer):
     def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str:
         """Return a row; lists of numbers and long names may be wrapped."""
         shown = []
-        for k, (column, cell) in enumerate(zip(table.columns, cells)):
-            listed = number in table.lists and k == 1
-            right = ' class="l"' if listed else _right(not column.words)
-            if k >= table.heads:
-                shown.append(f"<td{right}>{cell}</td>")
-            else:
-                shown.append(
-                    f'<th scope="row"{right}>{cell.replace(".", ".<wbr>") if column.words else cell}</th>'
-                )
+        for index, (column, cell) in enumerate(zip(table.columns, cells)):
+            is_list = number in table.lists and index == 1
+            side = ' class="l"' if is_list else _right(not column.words)
+            if index >= table.heads:
+                shown.append(f"<td{side}>{cell}</td>")
+                continue
+            name = cell.replace(".", ".<wbr>") if column.words else cell
+            shown.append(f'<th scope="row"{side}>{name}</th>')
         verdict = f' class="{table.verdicts[number]}"' if table.verdicts else ""
         return f"<tr{verdict}>{''.join(shown)}</tr>\n"
 
@@ -153,7 +153,7 @@ _MATH = {
 }  # fmt: skip
 """Character -> its command in a formula, without the backslash; what begins with -, ^ or _ is no command."""
 _SPECIAL = {
-    **{one: f"\\{one}" for one in "{}$&#%_"}, "\\": r"\textbackslash{}", "^": r"\textasciicircum{}",
+    **{letter: f"\\{letter}" for letter in "{}$&#%_"}, "\\": r"\textbackslash{}", "^": r"\textasciicircum{}",
     "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}",
     '"': r"\textquotedblright{}", "„": r"\quotedblbase{}", "[": "{[}", "*": "{*}", "\N{NARROW NO-BREAK SPACE}": r"\,",
 }  # fmt: skip
@@ -179,10 +179,7 @@ class Latex(Writer):
         >>> print(Latex(Look()).text("50 % of φ_1 ≤ 90°"), Latex(Look()).text("−3"))
         50 \% of $\varphi$\_1 $\le$ 90$^\circ$ $-$3
         """
-        return "".join(
-            _SPECIAL.get(one) or (f"${_formula(one)}$" if one[1:] or one in _MATH else one)
-            for one in re.findall(_LETTER, plain)
-        )
+        return "".join(map(_in_text, re.findall(_LETTER, plain)))
 
     def symbol(self, plain: str) -> str:
         r"""Return a symbol, with what follows its underscore as a subscript.
@@ -190,10 +187,13 @@ class Latex(Writer):
         >>> print(*map(Latex(Look()).symbol, ("P_b", "φ_P=0", "ΔE")))
         $P_{\mathrm{b}}$ $\varphi_{\mathrm{P=0}}$ $\Delta$E
         """
-        found = re.fullmatch(_INDEXED, plain)
-        if not found:
+        indexed = re.fullmatch(_INDEXED, plain)
+        if not indexed:
             return self.text(plain)
-        name, index = ("".join(map(_formula, re.findall(_LETTER, part))) for part in found.groups())
+        formulas = []
+        for part in indexed.groups():
+            formulas.append("".join(map(_formula, re.findall(_LETTER, part))))
+        name, index = formulas
         return f"${name}_{{\\mathrm{{{index}}}}}$"
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
@@ -209,11 +209,22 @@ class Latex(Writer):
         return text + "\\midrule\n\\endhead\n"
 
 
-def _formula(one: str) -> str:
+def _in_text(letter: str) -> str:
+    """Return a character, or a letter with dots over it, as it is written in a text."""
+    if letter in _SPECIAL:
+        return _SPECIAL[letter]
+    is_formula = len(letter) > 1 or letter in _MATH
+    return f"${_formula(letter)}$" if is_formula else letter
+
+
+def _formula(letter: str) -> str:
     """Return a character, or a letter with dots over it, as it is written in a formula."""
-    found = _MATH.get(one[0]) or {"_": "\\_"}.get(one[0], one[0])
-    base = f"\\{found}" if one[0] in _MATH and found[0] not in "-^_" else found
-    return f"\\{_DOTS[one[1]]}{{{base}}}" if one[1:] else base
+    base, dots = letter[0], letter[1:]
+    written = "\\_" if base == "_" else base
+    if base in _MATH:
+        command = _MATH[base]
+        written = command if command[0] in "-^_" else f"\\{command}"
+    return f"\\{_DOTS[dots]}{{{written}}}" if dots else written
 
 
 # the report, element by element
@@ -223,20 +234,25 @@ def document(report: Report, out: Writer) -> Iterator[str]:
     """Yield the text of the report piece by piece; identical cylinders appear once."""
     report, look = for_people(report), out.look
     yield out.title.format(out.words(report.title))
-    yield from (out.paragraph.format(out.prose(text)) for text in report.head)
+    for text in report.head:
+        yield out.paragraph.format(out.prose(text))
     yield from written(over_angle(report, out), out)
     yield from written(of_places(report, out), out)
-    yield from (out.paragraph.format(out.prose(note)) for note in notes_for_people(report))
+    for note in notes_for_people(report):
+        yield out.paragraph.format(out.prose(note))
     for part in report.all_parts:
         name = part_name(report, part, look)
         of = f": {name}" if name else ""
         for heading, key_values in headed(part.key_values).items():
-            caption = f"Key values{of}{f', {heading.lower()}' if heading else ''}"
+            under = f", {heading.lower()}" if heading else ""
+            caption = f"Key values{of}{under}"
             if key_values:
                 yield from written([key_value_table(caption, key_values, look)], out)
-        yield from listed(f"Left out{of}", [f"{one.what}: {one.why}" for one in part.left_out], out)
+        left_out = [f"{reason.what}: {reason.why}" for reason in part.left_out]
+        yield from listed(f"Left out{of}", left_out, out)
         yield from listed(f"Warnings{of}", part.warnings, out)
-    if books := legend_of(report):
+    books = legend_of(report)
+    if books:
         yield out.paragraph.format(out.prose(books))
 
 
@@ -278,17 +294,18 @@ def written(tables: Iterable[TextTable], out: Writer) -> Iterator[str]:
         "sentence": out.sentence,
     }
     for table in tables:
-        heads = [
-            ((out.text if column.words else out.symbol)(column.symbol), out.text(column.unit))
-            for column in table.columns
-        ]
+        heads = []
+        for column in table.columns:
+            escape_head = out.text if column.words else out.symbol
+            heads.append((escape_head(column.symbol), out.text(column.unit)))
         yield out.table_head(table, out.text(table.caption), heads)
-        of_columns = [escapes[column.kind] for column in table.columns]
         for number, row in enumerate(zip(*(column.cells for column in table.columns))):
-            cells = [
-                out.strong.format(out.text(text[:-1])) if text.endswith(MARK) else escaped(text)
-                for escaped, text in zip(of_columns, map(str.strip, row))
-            ]
+            cells = []
+            for column, text in zip(table.columns, map(str.strip, row)):
+                if text.endswith(MARK):
+                    cells.append(out.strong.format(out.text(text.removesuffix(MARK))))
+                else:
+                    cells.append(escapes[column.kind](text))
             yield out.row(table, number, cells)
         yield out.table_end
 

@@ -51,11 +51,11 @@ def listing(
     return "".join(plain_lines(lines))
 
 
-def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
+def write_entries(entries: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
     """Write heads in a column, each with its text, to a file or to standard output."""
     from kurbel.render.text import in_two_columns, plain_lines
 
-    write_out(plain_lines(in_two_columns(found, look_at(file_name, Look()), "")), file_name)
+    write_out(plain_lines(in_two_columns(entries, look_at(file_name, Look()), "")), file_name)
 
 
 # standard output
@@ -69,21 +69,28 @@ def look_at(file_name: str | None, look: Look) -> Look:
     if file_name not in (None, "-"):
         return look
     stdout = _stdout()
-    measured = stdout.isatty() or os.environ.get("COLUMNS", "").isdecimal()
-    return look._replace(
-        encoding=stdout.encoding or "utf-8",
-        width=look.width or (terminal_size()[0] if measured else None),
-    )
+    encoding = stdout.encoding or "utf-8"
+    has_width = stdout.isatty() or os.environ.get("COLUMNS", "").isdecimal()
+    if look.width or not has_width:
+        return look._replace(encoding=encoding, width=look.width or None)
+    return look._replace(encoding=encoding, width=terminal_size()[0])
 
 
 def terminal_size(fallback: tuple[int, int] = (80, 24)) -> tuple[int, int]:
     """Return columns and lines of the terminal: those of the environment, or its own."""
-    given = [os.environ.get(name, "") for name in ("COLUMNS", "LINES")]
-    own: tuple[int, int] = fallback
-    with suppress(ValueError, OSError):  # standard output may be closed, or no terminal
-        own = os.get_terminal_size(sys.__stdout__.fileno()) if sys.__stdout__ else fallback
-    columns, lines = (int(text) if text.isdecimal() else 0 for text in given)
-    return columns or own[0] or fallback[0], lines or own[1] or fallback[1]
+    measured: tuple[int, int] = fallback
+    if sys.__stdout__:
+        with suppress(ValueError, OSError):  # standard output may be closed, or no terminal
+            measured = os.get_terminal_size(sys.__stdout__.fileno())
+    columns = _number_of("COLUMNS") or measured[0] or fallback[0]
+    lines = _number_of("LINES") or measured[1] or fallback[1]
+    return columns, lines
+
+
+def _number_of(variable: str) -> int:
+    """Return the number that a variable of the environment has, 0 without one."""
+    text = os.environ.get(variable, "")
+    return int(text) if text.isdecimal() else 0
 
 
 def _stdout() -> TextIO:
@@ -144,24 +151,27 @@ def opened(file_name: str | None, resumed: int | None = None) -> Iterator[Binary
     A device or a pipe is written to as it is. resumed: of what may go on later, the bytes that stay of what is there;
     it goes to FILE.part, which an early end leaves. A reader that leaves early is no fault; raises UsageError.
     """
-    named = file_name not in (None, "-")
+    has_name = file_name not in (None, "-")
     try:
-        if not named:
+        if not has_name:
             stdout = _stdout()
             stdout.flush()
             yield stdout.buffer
             stdout.flush()
-        elif target := whole_file(str(file_name)):
+            return
+        target = whole_file(str(file_name))
+        if target:
             with _replacing(target, resumed) as file:
                 yield file
         else:
             with open(str(file_name), "wb") as file:
                 yield file
     except OSError as error:
-        if not named:
+        if not has_name:
             silence(sys.stdout)
         if not isinstance(error, BrokenPipeError):
-            where = (file_name or "to an empty file name") if named else "to standard output"
+            target_name = file_name or "to an empty file name"
+            where = target_name if has_name else "to standard output"
             raise UsageError(f"cannot write {where}: {error.strerror or error}") from None
 
 
@@ -169,9 +179,10 @@ def opened(file_name: str | None, resumed: int | None = None) -> Iterator[Binary
 def _replacing(target: str, resumed: int | None) -> Iterator[BinaryIO]:
     """Yield a new file next to a target, which it replaces with the same mode; an empty one is removed."""
     ending = f".kurbel-{os.urandom(8).hex()}"
-    path = (
-        f"{target}.part" if resumed is not None else os.path.join(os.path.dirname(target), ending)
-    )
+    if resumed is None:
+        path = os.path.join(os.path.dirname(target), ending)
+    else:
+        path = f"{target}.part"
     if resumed and not os.path.isfile(path):
         with open(target, "rb") as old, open(path, "wb") as file:
             file.writelines(iter(lambda: old.read(_AT_ONCE), b""))

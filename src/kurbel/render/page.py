@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import chain, islice
 from typing import NamedTuple
 
+from kurbel.quantity import first_words
 from kurbel.render import Look
 from kurbel.render.output import terminal_size
 from kurbel.render.text import (
@@ -30,7 +31,13 @@ from kurbel.render.text_tables import (
     sheets,
 )
 from kurbel.tables.sources import legend_of
-from kurbel.tables.tables import KeyValue, Report, first_selection, for_people, notes_for_people
+from kurbel.tables.tables import (
+    KeyValue,
+    Report,
+    first_selection,
+    for_people,
+    notes_for_people,
+)
 
 _NINE = 9  # angles to a block: the book breaks after 80°
 _SIDE, _CELL = 14, 8
@@ -65,14 +72,17 @@ def page_lines(report: Report, look: Look) -> Iterator[Line]:
         yield from sentence("", books, look)
 
 
-def selection(report: Report, look: Look) -> Iterator[Line]:
-    """Yield the lines of a first selection: the key values, a short table, and what is left out in one line."""
+def selection(report: Report, look: Look, in_short: bool = False) -> Iterator[Line]:
+    """Yield the lines of a first selection: the key values, a short table, and what is left out in one line.
+
+    in_short: key values have no more words than fit next to them.
+    """
     yield from _title(report, look)
     for part in report.all_parts:
         if part.key_values:
             name = part_name(report, part, look)
             yield from (BLANK, line(name, "name")) if name else (BLANK,)
-            yield from _key_value_lines(part.key_values, look)
+            yield from _key_value_lines(part.key_values, look, in_short)
     yield from _tables(report, look)
     yield from _sentences("", report.notes, look)
     for part in report.all_parts:
@@ -137,17 +147,23 @@ def fitting(
     if len(beginning) < rows:
         return chain(beginning, lines)
 
-    # the prompt takes a line, too; a table over the angle must not push key values off the screen
+    # a table over the angle must not push key values off the screen
     across = max(((look.width or 80) - _SIDE) // _CELL, 4)
     selected = first_selection(report, first, across, rows=rows // 6)
-    page = list(selection(selected, look))
-    if len(page) < rows or not any(part.key_values for part in selected.all_parts):
-        return iter(page)
-    without_table = selected.changed(lambda part: part._replace(columns=()))
-    page = list(selection(without_table, look))
-    if len(page) < rows or not named:
-        return iter(page)
-    return selection(first_selection(report, named, across, rows=rows // 6), look)
+    candidates = [selected]
+    if any(part.key_values for part in selected.all_parts):
+        candidates.append(selected.changed(lambda part: part._replace(columns=())))
+        if named:
+            candidates.append(first_selection(report, named, across, rows=rows // 6))
+
+    # the prompt takes a line, too
+    page = list[Line]()
+    for candidate in candidates:
+        for in_short in (False, True):
+            page = list(selection(candidate, look, in_short))
+            if len(page) < rows:
+                return iter(page)
+    return iter(page)
 
 
 # a line for each row
@@ -314,8 +330,13 @@ def fitting_sizes(count: int, most: int) -> list[int]:
 # sentences and key values
 
 
-def _key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Line]:
-    """Yield a line for each key value: symbol, value, unit, crank angle, meaning; those of one heading together."""
+def _key_value_lines(
+    key_values: Collection[KeyValue], look: Look, in_short: bool = False
+) -> Iterator[Line]:
+    """Yield a line for each key value: symbol, value, unit, crank angle, meaning; those of one heading together.
+
+    in_short: the meaning in two or three words, or none where these would need another line.
+    """
     groups = headed(key_values)
     table = key_value_table("", list(chain(*groups.values())), look)
     symbols, values, units, at_angles, meanings = (column.cells for column in table.columns)
@@ -346,7 +367,16 @@ def _key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[L
                 head += f"{padded(angle, angle_width)}  "
             elif angle:
                 text = f"{angle}  {meaning}"
+            if in_short:
+                text = _words_beside(head, text, look)
             yield from sentence(head, text, look)
+
+
+def _words_beside(head: str, text: str, look: Look) -> str:
+    """Return the first words of a sentence, '' where these do not fit next to what is before them."""
+    words = first_words(text).partition(" per ")[0]
+    fits = look.width is None or width(head) + width(words) <= look.width
+    return words if fits else ""
 
 
 def _below_one_another(texts: Sequence[str], lists: Collection[int]) -> list[str]:

@@ -42,42 +42,46 @@ def report_page(long: Document, look: Look, date: str) -> Iterator[str]:
 def _parts(long: Document, out: Html, date: str) -> Iterator[str]:
     """Yield title, first page, links, sections, and what it was made from."""
     yield f"<header>\n<h1>{out.words(long.title)}</h1>\n"
-    yield from (
-        f'<p class="sub">{out.prose(subtitle)}</p>\n' for subtitle in long.subtitles if subtitle
-    )
+    for subtitle in filter(None, long.subtitles):
+        yield f'<p class="sub">{out.prose(subtitle)}</p>\n'
     yield '</header>\n<section id="summary" aria-label="Summary">\n'
     for item in long.summary:
         yield from _item(item, out)
-    links = "".join(
-        f'<li><a href="#{one.id}">{out.words(one.title)}</a></li>\n' for one in long.sections
-    )
-    yield f'</section>\n<nav aria-label="Contents">\n<ul>\n{links}</ul>\n</nav>\n'
+    yield '</section>\n<nav aria-label="Contents">\n<ul>\n'
+    for section in long.sections:
+        yield f'<li><a href="#{section.id}">{out.words(section.title)}</a></li>\n'
+    yield "</ul>\n</nav>\n"
     for section in long.sections:
         yield f'<section id="{section.id}">\n<h2>{out.words(section.title)}</h2>\n'
         for item in section.items:
             yield from _item(item, out)
         yield "</section>\n"
+
     yield f"<footer>\n<p>{out.words(date)}, kurbel {__version__}</p>\n"
-    if books := legend(_texts_of(long)):
+    books = legend(_texts_of(long))
+    if books:
         yield f"<p>{out.prose(books)}</p>\n"
     for made_from in long.provenance:
-        files = [
-            f"{one.file}: SHA-256 {sha256_of(one) or 'not known, the file is gone'}"
-            for one in made_from.inputs
-        ]
-        files += [f"set over it: {override}" for override in made_from.overrides]
-        files += [f"{name} {version}" for name, version in made_from.versions.items()]
-        yield from listed("Made from", files, out)
+        texts = []
+        for file in made_from.inputs:
+            texts.append(f"{file.file}: SHA-256 {sha256_of(file) or 'not known, the file is gone'}")
+        texts += [f"set over it: {override}" for override in made_from.overrides]
+        texts += [f"{name} {version}" for name, version in made_from.versions.items()]
+        yield from listed("Made from", texts, out)
     yield "</footer>\n"
 
 
 def _texts_of(long: Document) -> Iterator[str]:
     """Yield the texts of a long report that may refer to a book: those of its answers, notices and pictures."""
-    for item in (*long.summary, *(item for section in long.sections for item in section.items)):
+    items = list(long.summary)
+    for section in long.sections:
+        items += section.items
+    for item in items:
         if isinstance(item, ReportAnswers):
             yield from texts_of(item.report)
         elif isinstance(item, Grid):
-            yield from (cell for row in item.rows for cell in row if isinstance(cell, str))
+            for row in item.rows:
+                yield from (cell for cell in row if isinstance(cell, str))
         elif isinstance(item, (Notice, Picture)):
             yield item.text
         elif isinstance(item, Pair):
@@ -109,22 +113,22 @@ def _item(item: SectionItem, out: Html) -> Iterator[str]:
     elif isinstance(item, Notice):
         yield f'<p class="notice {item.kind}">{out.prose(item.text)}</p>\n'
     elif isinstance(item, Pair):
-        sides = "".join(_figure(one, out) if one else "<div></div>\n" for one in item)
+        sides = "".join(_figure(side, out) if side else "<div></div>\n" for side in item)
         yield f'<div class="pair">\n{sides}</div>\n'
     else:
         yield f"<p>{out.prose(item)}</p>\n"
 
 
-def _fact(one: Fact, out: Html) -> str:
+def _fact(fact: Fact, out: Html) -> str:
     """Return a key value as a tile: what it is, its value, its symbol with its place."""
     look = out.look
-    value, unit = look.measured(one.value, one.unit, DIGITS)
-    at = "" if one.at_deg is None else f"at {look.extreme_at(one.at_deg, one.side)}"
-    place = " ".join(filter(None, (look.text(one.where), at)))
+    value, unit = look.measured(fact.value, fact.unit, DIGITS)
+    at = "" if fact.at_deg is None else f"at {look.extreme_at(fact.at_deg, fact.side)}"
+    where = " ".join(filter(None, (look.text(fact.where), at)))
     of = f" <small>{out.text(unit)}</small>" if unit else ""
     return (
-        f"<p><small>{out.words(one.title)}</small><br><b>{out.text(value)}</b>{of}"
-        f"<br><small>{out.symbol(look.text(one.symbol))} {out.text(place)}</small></p>\n"
+        f"<p><small>{out.words(fact.title)}</small><br><b>{out.text(value)}</b>{of}"
+        f"<br><small>{out.symbol(look.text(fact.symbol))} {out.text(where)}</small></p>\n"
     )
 
 
@@ -136,12 +140,16 @@ def _figure(picture: Picture, out: Html) -> str:
 
 
 def _text_table(grid: Grid, look: Look) -> TextTable:
+    """Return a grid as a table of texts."""
     columns = []
-    for k, (head, cells) in enumerate(zip(grid.heads, zip(*grid.rows))):
-        kind = "symbol" if head == "Symbol" else "number" if k in grid.numbers else "name"
-        columns.append(
-            TextColumn(look.text(head), "", [_shown(cell, head, look) for cell in cells], kind)
-        )
+    for number, (head, cells) in enumerate(zip(grid.heads, zip(*grid.rows))):
+        kind = "name"
+        if head == "Symbol":
+            kind = "symbol"
+        elif number in grid.numbers:
+            kind = "number"
+        texts = [_shown(cell, head, look) for cell in cells]
+        columns.append(TextColumn(look.text(head), "", texts, kind))
     return TextTable(look.text(grid.title), columns, 1, grid.verdicts)
 
 

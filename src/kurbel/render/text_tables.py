@@ -70,11 +70,8 @@ def sheets(report: Report, look: Look) -> Iterator[tuple[list[TextColumn], Bands
         ]
         bands: Bands = []
         for part in same_angles:
-            columns = []
-            for column in part.columns[1:]:
-                sizes = (column.size,) if column.size else column.values
-                columns.append(_scaled(column, digit_scale(sizes, look.digits), look, pad))
-            bands.append((part_name(report, part, look), columns))
+            curves = [_curve(column, look, pad) for column in part.columns[1:]]
+            bands.append((part_name(report, part, look), curves))
         yield heads, bands
 
 
@@ -85,6 +82,51 @@ def _mirrored(phi: Column) -> Column:
         ascii_symbol=f"360 - {phi.ascii_symbol}",
         values=tuple(None if angle is None else 360 - angle for angle in phi.values),
     )
+
+
+def _curve(column: Column, look: Look, pad: str) -> TextColumn:
+    """Return a column over the crank angle at one scale, which has more decimals if a value would be printed as 0.0.
+
+    A value that is too small for that, next to a zero of the curve, has its own power of ten.
+    """
+    column = _without_rounding(column, (column.size, *column.values))
+    scale = digit_scale(column.values, look.digits)
+    finer = _visible_scale(column, scale)
+    if finer is not None:
+        return _scaled(column, finer, look, pad)
+
+    # the scale that all others have
+    shown = _scaled(column, scale, look, pad)
+    cells = list(shown.cells)
+    for row, value in enumerate(column.values):
+        is_hidden = bool(value) and float(cell(value, scale)) == 0
+        if value and is_hidden:
+            in_unit = value / 10.0**scale.exponent
+            number = look.counted(*single(in_unit, look.digits, _FEW_DIGITS))
+            cells[row] = look.number(number) + pad
+    return shown._replace(cells=cells)
+
+
+def _without_rounding(column: Column, sharing: Sequence[CellValue]) -> Column:
+    """Return a column with zeros in the place of rounding errors, which are relative to values of the same unit."""
+    largest = max((abs(value) for value in sharing if value is not None), default=0.0)
+    values = list[CellValue]()
+    for value in column.values:
+        is_rounding = value is not None and abs(value) <= _ROUNDING * largest
+        values.append(0.0 if is_rounding else value)
+    return column._replace(values=values)
+
+
+def _visible_scale(column: Column, scale: Scale) -> Scale | None:
+    """Return the scale, or one with as many more decimals as the smallest value needs; None if these are too many."""
+    sizes = [abs(value) for value in column.values if value]
+    if not sizes:
+        return scale
+    for more in range(_MORE_DECIMALS + 1):
+        finer = scale._replace(decimals=scale.decimals + more)
+        if float(cell(min(sizes), finer)) > 0:
+            return finer
+    return None
 
 
 def _scaled(
@@ -151,27 +193,19 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
 
 _ROUNDING = 1e-12
 """Values below this, relative to the largest of their unit, are rounding errors of a zero."""
+_FEW_DIGITS = 2
+"""Of a value next to a zero of its curve."""
 _MORE_DECIMALS = 2
 """So many more than the shared scale has are printed for a small value, before values get powers of ten."""
 
 
 def _visible(column: Column, sharing: Sequence[CellValue], look: Look, missing: str) -> TextColumn:
     """Return a column at the scale of all values that share its unit, or finer, so that none is printed as 0.0."""
-    shared = digit_scale(sharing, look.digits)
-    largest = max((abs(value) for value in sharing if value is not None), default=0.0)
-    values = list[CellValue]()
-    for value in column.values:
-        is_rounding = value is not None and abs(value) <= _ROUNDING * largest
-        values.append(0.0 if is_rounding else value)
-    column = column._replace(values=values)
-
-    smallest = min((abs(value) for value in values if value), default=largest)
-    for more in range(_MORE_DECIMALS + 1):
-        scale = shared._replace(decimals=shared.decimals + more)
-        is_visible = not smallest or float(cell(smallest, scale)) > 0
-        if is_visible:
-            return _scaled(column, scale, look, missing=missing)
-    return _each_scaled(column, DIGITS, look, missing)
+    column = _without_rounding(column, sharing)
+    finer = _visible_scale(column, digit_scale(sharing, look.digits))
+    if finer is None:
+        return _each_scaled(column, DIGITS, look, missing)
+    return _scaled(column, finer, look, missing=missing)
 
 
 def _each_scaled(column: Column, digits: int, look: Look, missing: str) -> TextColumn:

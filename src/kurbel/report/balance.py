@@ -14,6 +14,7 @@ from kurbel.notes.left_out import (
 from kurbel.notes.warnings import (
     pin_warnings,
 )
+from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.balance import MachineBalance
@@ -168,7 +169,8 @@ def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
     """
     if balance.omega is None:
         return
-    square, free, book = balance.omega**2, balance.free, balance.book if compare else None
+    square, free = balance.omega**2, balance.free
+    book = balance.book if compare else None
     rows: list[PlaceRow] = []
     for order in free.orders:
         values: dict[str, float | None] = {"order": order}
@@ -176,25 +178,8 @@ def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
             ("F", free.force, book.force if book else None),
             ("M", free.moment, book.moment if book else None),
         ):
-            if vector is None:
-                continue
-            f, g = (complex(vector.of(one)[0]) * square for one in (order, -order))
-            whole = float((np.abs(vector.waves * square) ** 2).sum())
-            values |= {f"{name}_forward": abs(f), f"{name}_backward": abs(g)}
-            values[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / whole if whole else None
-            if of_book is not None:
-                values[f"{name}_forward_book"] = abs(complex(of_book.of(order)[0])) * square
-                values[f"{name}_backward_book"] = abs(complex(of_book.of(-order)[0])) * square
-            values |= {f"{name}_long": abs(f) + abs(g), f"{name}_short": abs(abs(f) - abs(g))}
-            # both circles meet in the middle of their directions, here from 0 to below 180 degrees
-            middle = math.degrees(cmath.phase(f * g)) / 2
-            is_rounding = abs(middle) <= _NOTHING
-            middle = 0.0 if is_rounding else middle % 180.0
-            values[f"{name}_direction"] = middle if f and g else None
-            values |= {
-                f"{name}_forward_phase": _direction(f),
-                f"{name}_backward_phase": _direction(g),
-            }
+            if vector is not None:
+                values |= _order_of_vector(name, vector, of_book, order, square)
         rows.append(((), values))
     title = "Orders: circles with the crank (+) and against it (−)"
     yield Places("orders", title, (), ORDERS, rows, alone=_DIGITS)
@@ -202,44 +187,84 @@ def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
     yield Places("ellipses", title, (), ELLIPSES, rows, alone=_DIGITS)
 
 
+def _order_of_vector(
+    name: str, vector: ClosedCurve, of_book: ClosedCurve | None, order: int, square: float
+) -> dict[str, float | None]:
+    """Return one order of a force F or a moment M: its two circles and its ellipse; square: ω²."""
+    values: dict[str, float | None] = {}
+    f = complex(vector.of(order)[0]) * square
+    g = complex(vector.of(-order)[0]) * square
+    total = float((np.abs(vector.waves * square) ** 2).sum())
+    values[f"{name}_forward"] = abs(f)
+    values[f"{name}_backward"] = abs(g)
+    values[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / total if total else None
+    if of_book is not None:
+        values[f"{name}_forward_book"] = abs(complex(of_book.of(order)[0])) * square
+        values[f"{name}_backward_book"] = abs(complex(of_book.of(-order)[0])) * square
+    values[f"{name}_long"] = abs(f) + abs(g)
+    values[f"{name}_short"] = abs(abs(f) - abs(g))
+
+    # both circles meet in the middle of their directions, here from 0 to below 180 degrees
+    middle = math.degrees(cmath.phase(f * g)) / 2
+    is_rounding = abs(middle) <= _NOTHING
+    middle = 0.0 if is_rounding else middle % 180.0
+    values[f"{name}_direction"] = middle if f and g else None
+    values[f"{name}_forward_phase"] = _direction(f)
+    values[f"{name}_backward_phase"] = _direction(g)
+    return values
+
+
 def _weights(balance: MachineBalance) -> Iterator[Places]:
     """Yield the best weights, and what the wheels of a locomotive carry besides the rotating masses."""
-
-    def row(
-        name: str, place: float | None, product: complex
-    ) -> tuple[tuple[str], dict[str, float | None]]:
-        at: dict[str, float | None] = {} if place is None else {"axial_position": place}
-        return (name,), {**at, "product": abs(product), "angle": _direction(product)}
-
-    best = zip("AB", balance.best_in_planes)
-    rows = [row(f"counterweight {end}", one.place, one.product) for end, one in best if one.product]
-    for order, weights in groupby(balance.best_shafts, lambda one: one.order):
-        name, given = (
-            f"shaft n = {abs(order)}, {'with' if order > 0 else 'against'} the crank",
-            [*weights],
-        )
-        for end, one in zip("AB", given):
-            rows.append(row(f"{name}: {end}" if len(given) > 1 else name, one.place, one.product))
+    rows: list[PlaceRow] = []
+    for end, weight in zip("AB", balance.best_in_planes):
+        if weight.product:
+            rows.append(_weight_row(f"counterweight {end}", weight.place, weight.product))
+    for order, shafts in groupby(balance.best_shafts, lambda weight: weight.order):
+        weights = list(shafts)
+        direction = "with" if order > 0 else "against"
+        name = f"shaft n = {abs(order)}, {direction} the crank"
+        for end, shaft in zip("AB", weights):
+            title = f"{name}: {end}" if len(weights) > 1 else name
+            rows.append(_weight_row(title, shaft.place, shaft.product))
     if rows:
         title = "Counterweights in two planes, and balance shafts"
         yield Places("best_weights", title, ("weight",), WEIGHTS, rows)
     if balance.machine.locomotive:
-        rows, square = [], (balance.omega or 0.0) ** 2
-        wheels = zip("AB", balance.wheels, balance.in_wheels(), balance.in_wheels("counterweights"))
-        for name, place, product, weight in wheels:
-            head, values = row(name, place, product)
-            values |= {"hammer_blow": abs(product) * square} if square else {}
-            values |= (
-                {"counterweight": abs(weight), "counterweight_angle": _direction(weight)}
-                if weight
-                else {}
-            )
-            rows.append((head, values))
+        rows = list(_wheel_rows(balance))
         title = "In the wheels: what they carry beyond the rotating masses, and the whole counterweights"
         yield Places("wheels", title, ("wheel",), WEIGHTS, rows)
 
 
+def _wheel_rows(balance: MachineBalance) -> Iterator[PlaceRow]:
+    """Yield what each wheel carries beyond the rotating masses, its hammer blow, and its counterweight."""
+    square = (balance.omega or 0.0) ** 2
+    products, weights = balance.in_wheels(), balance.in_wheels("counterweights")
+    for name, position, product, weight in zip("AB", balance.wheels, products, weights):
+        head, values = _weight_row(name, position, product)
+        if square:
+            values["hammer_blow"] = abs(product) * square
+        if weight:
+            values["counterweight"] = abs(weight)
+            values["counterweight_angle"] = _direction(weight)
+        yield head, values
+
+
+def _weight_row(
+    name: str, position: float | None, product: complex
+) -> tuple[tuple[str], dict[str, float | None]]:
+    """Return the row of a weight: where it is along the shaft, its product m r, and its direction."""
+    values: dict[str, float | None] = {}
+    if position is not None:
+        values["axial_position"] = position
+    values["product"] = abs(product)
+    values["angle"] = _direction(product)
+    return (name,), values
+
+
 def _direction(circle: complex) -> float | None:
     """Return a direction in degrees, above −180 and up to 180; None for nothing."""
+    if not circle:
+        return None
     degrees = math.degrees(cmath.phase(circle))
-    return None if not circle else degrees if degrees > _NOTHING - 180 else degrees + 360
+    return degrees if degrees > _NOTHING - 180 else degrees + 360

@@ -57,8 +57,11 @@ def subjects_of(case: "Case", command: str, pistons: bool = False) -> "list[Subj
     pistons: also each piston of a rod that has several. Raises UsageError if the machine has no such results,
     NoSolutionError if it jams, stalls, or vibrates without limit.
     """
-    found = COMMANDS[command].functions.subjects(case)
-    return [*found, *(piston for one in found for piston in one.pistons)] if pistons else found
+    subjects = list(COMMANDS[command].functions.subjects(case))
+    if pistons:
+        for subject in tuple(subjects):
+            subjects += subject.pistons
+    return subjects
 
 
 def report_of(case: "Case", frame: "Frame") -> "Report":
@@ -190,8 +193,9 @@ _ROWS = (
         section=(3, "Forces"),
         options=("uncertainty",),
         first="x theta P N T M_out b_max c_max theta_ddot_max theta_dot_max power mean_pressure "
-        "P_max P_min N_max N_min T_max T_min friction_work friction_power friction_loss friction_force_mean",
-        named="b_max c_max theta_ddot_max theta_dot_max friction_work friction_power friction_loss",
+        "P_max P_min N_max N_min T_max T_min friction_work friction_power friction_loss friction_force_mean "
+        "power_indicated power_friction mechanical_efficiency",
+        named="b_max c_max theta_ddot_max theta_dot_max friction_work friction_power friction_loss power_friction",
         in_cases="p_max P_max P_min T_max rod_compression_max rod_tension_max reversal_angle reversal_ratio work power",
     ),
     Command(
@@ -279,5 +283,5 @@ _ROWS = (
 )
 COMMANDS = {row.word: row for row in _ROWS}
 """By its word, in the order in which `kurbel --help` lists them."""
-REPORTS = sorted((row for row in _ROWS if row.of), key=lambda one: one.section)
+REPORTS = sorted((row for row in _ROWS if row.of), key=lambda row: row.section)
 """Those that report on a machine, in the order of the whole report."""

@@ -30,18 +30,23 @@ _COARSE = 0.5
 
 
 def _delivering(case: Case) -> list[Subject]:
-    found, whole = case.delivery, Subject("whole machine")
-    if found.pump:
-        whole = Subject("whole machine", found.pump, found.pump.at)
-    warnings = chain(of_machine(case), delivery_warnings(found))
-    return [
-        *(
-            Subject(stage.name, stage, tables=_ends_tables(stage), part=stage.part)
-            for stage in found.stages
-        ),
-        *(Subject(piston.name, piston, piston.at) for piston in found.pistons),
-        whole._replace(left_out=delivery_left_out(found), warnings=warnings, whole=True),
-    ]
+    """Return the stages of a compressor, the pistons of a pump, and the whole machine."""
+    delivery = case.delivery
+    subjects = []
+    for stage in delivery.stages:
+        subjects.append(Subject(stage.name, stage, tables=_ends_tables(stage), part=stage.part))
+    for piston in delivery.pistons:
+        subjects.append(Subject(piston.name, piston, piston.at))
+    pump = delivery.pump
+    whole = Subject(
+        "whole machine",
+        pump,
+        pump.at if pump else None,
+        left_out=delivery_left_out(delivery),
+        warnings=chain(of_machine(case), delivery_warnings(delivery)),
+        whole=True,
+    )
+    return [*subjects, whole]
 
 
 def _ends_tables(stage: CompressorStage) -> Iterator[Places]:
@@ -57,42 +62,40 @@ def _ends_tables(stage: CompressorStage) -> Iterator[Places]:
 
 
 def _delivery_notes(case: Case) -> Iterator[str]:
-    found = case.delivery
-    if found.pump:
+    delivery = case.delivery
+    if delivery.pump:
         yield "Flow is that of rigid pistons: each chamber delivers all that it displaces, less the slip."
-        if found.pistons:
+        if delivery.pistons:
             yield "φ is the angle of crank 1 for the whole machine, of its own crank for each piston."
-    if found.stages:
+    if delivery.stages:
         yield "Compressors are those of the ideal card: valves without losses, no leakage, no heat from the walls."
 
 
 DELIVERY = Functions("Delivery", _delivering, _delivery_notes)
 
 
-def delivery_left_out(found: MachineDelivery) -> Iterator[LeftOut]:
+def delivery_left_out(delivery: MachineDelivery) -> Iterator[LeftOut]:
     """Yield what flows, capacities and powers of pumps and compressors leave out."""
-    machine, drawn = found.machine, any(stage.suction is None for stage in found.stages)
-    gases = [
-        piston.gas or machine.gas for cylinder in machine.cylinders for piston in cylinder.pistons
-    ]
-    constants = [one for one in (*gases, machine.gas) if one]
+    machine = delivery.machine
+    gases = [machine.gas]
+    for cylinder in machine.cylinders:
+        gases += [piston.gas for piston in cylinder.pistons]
+    constants = [gas for gas in gases if gas]
+    has_mass = any(gas.gas_constant for gas in constants)
+    has_exponent = any(gas.isentropic_exponent for gas in constants)
     no_speed = "no speed given" if machine.speed is None else ""
     no_gas = "" if constants else "no gas given"
-    no_mass = "" if any(constant.gas_constant for constant in constants) else "no molar_mass given"
-    no_exponent = (
-        ""
-        if any(constant.isentropic_exponent for constant in constants)
-        else "no isentropic_exponent given"
-    )
-    if found.pump:
+    no_mass = "" if has_mass else "no molar_mass given"
+    no_exponent = "" if has_exponent else "no isentropic_exponent given"
+    if delivery.pump:
         pipes = machine.pump and (machine.pump.suction_pipe or machine.pump.delivery_pipe)
         no_pipes = "" if pipes else "no pipes given under pump"
         yield from missing({"flow": no_speed, "pipes, vessels, suction lift": no_pipes})
-    if drawn:
+    if any(stage.suction is None for stage in delivery.stages):
         yield LeftOut(
             "capacity and the rest", "a drawn card or a trace does not say when valves open"
         )
-    elif found.stages:
+    elif delivery.stages:
         yield from missing(
             {
                 "capacity": no_speed,
@@ -103,24 +106,25 @@ def delivery_left_out(found: MachineDelivery) -> Iterator[LeftOut]:
         )
 
 
-def delivery_warnings(found: MachineDelivery) -> Iterator[str]:
+def delivery_warnings(delivery: MachineDelivery) -> Iterator[str]:
     """Yield stages in series whose mass flows differ, vessels that are small, and a lift that is too high."""
-    known = [stage for stage in found.stages if stage.suction is not None]
-    for one, after in pairwise(known):
-        flow, next_flow = one.answers.get("mass_flow"), after.answers.get("mass_flow")
-        low, high = _IN_SERIES
-        if not (flow and next_flow and low <= after.suction / one.delivery <= high):
+    low, high = _IN_SERIES
+    with_lines = [stage for stage in delivery.stages if stage.suction is not None]
+    for stage, after in pairwise(with_lines):
+        flow, next_flow = stage.answers.get("mass_flow"), after.answers.get("mass_flow")
+        in_series = low <= after.suction / stage.delivery <= high
+        if not (flow and next_flow and in_series):
             continue
         if abs(next_flow / flow - 1) > _APART:
             yield (
-                f"{after.name} draws in {next_flow / flow:.4g} times the mass flow of {one.name}: in steady running "
+                f"{after.name} draws in {next_flow / flow:.4g} times the mass flow of {stage.name}: in steady running "
                 "the pressure between them would move until both are equal"
             )
-    answers = found.pump.answers if found.pump else {}
+    answers = delivery.pump.answers if delivery.pump else {}
     for id, name in (("vessel_swing", "delivery"), ("suction_vessel_swing", "suction")):
         if answers.get(id, 0.0) > _COARSE:
             yield f"the pressure in the {name} vessel swings by {answers[id]:.3g} of its mean; its pipe is not at rest"
-    pipe = found.machine.pump and found.machine.pump.suction_pipe
+    pipe = delivery.machine.pump and delivery.machine.pump.suction_pipe
     most = answers.get("suction_lift_max")
     if pipe and pipe.lift is not None and most is not None and pipe.lift > most:
         yield (

@@ -11,7 +11,11 @@ from kurbel.tables.frame import Functions, Subject
 
 
 def _turned(case: Case) -> list[Subject]:
+    """Return the dead centres of each cylinder, and the whole machine."""
     turning, effort = case.flywheel, case.flywheel.effort
+    subjects = []
+    for cylinder in case.cylinders:
+        subjects.append(Subject(cylinder.drive.name, DeadCentre(cylinder, effort.cycle)))
     whole = Subject(
         "whole machine",
         turning,
@@ -20,13 +24,7 @@ def _turned(case: Case) -> list[Subject]:
         warnings=of_machine(case),
         whole=True,
     )
-    return [
-        *(
-            Subject(cylinder.drive.name, DeadCentre(cylinder, effort.cycle))
-            for cylinder in case.cylinders
-        ),
-        whole,
-    ]
+    return [*subjects, whole]
 
 
 def _flywheel_notes(case: Case) -> Iterator[str]:

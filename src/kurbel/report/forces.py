@@ -3,21 +3,29 @@
 What is only said to people, warnings and what is left out, is imported when it is read: a CSV table has none of it.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from kurbel.errors import UsageError
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from kurbel.solver.gas import Pressure
 from kurbel.tables.frame import Frame, Functions, Subject
 from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
 
+if TYPE_CHECKING:
+    from kurbel.solver.total_work import TotalWork
+
 
 def mechanism_notes(case: Case) -> Iterable[str]:
     """Return what a reader should know about the mechanisms, each sentence once."""
-    return dict.fromkeys(
-        note for cylinder in case.machine.cylinders for note in cylinder.mechanism.notes
-    )
+    notes = dict[str, None]()
+    for cylinder in case.machine.cylinders:
+        notes |= dict.fromkeys(cylinder.mechanism.notes)
+    return notes
 
 
 def _motion_left_out(case: Case, forces: CylinderForces) -> Iterator[LeftOut]:
@@ -55,7 +63,7 @@ MOTION = Functions("Motion of the crank train", _with_motion, mechanism_notes, l
 
 
 def _with_forces(case: Case) -> list[Subject]:
-    return [
+    cylinders = [
         Subject(
             forces.drive.name,
             forces,
@@ -67,6 +75,20 @@ def _with_forces(case: Case) -> list[Subject]:
         )
         for forces in case.cylinders
     ]
+    with_gas = [forces for forces in case.cylinders if forces.work is not None]
+    pistons = sum(max(len(forces.pistons), 1) for forces in with_gas)
+    if pistons < 2:
+        return cylinders
+    total = _total_work()(
+        case.machine, case.cylinders, lambda: case.effort.result(case.effort.mean)
+    )
+    return [*cylinders, Subject("whole machine", total, whole=True)]
+
+
+def _total_work() -> type[TotalWork]:
+    from kurbel.solver.total_work import TotalWork
+
+    return TotalWork
 
 
 def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str]]:
@@ -86,39 +108,44 @@ def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str
         for forces in case.cylinders:
             forces.refuse_locking()
         return cylinders, _forces_notes(case)
-    if cylinders and not any(
-        forces.indicated and forces.indicated.cycles for forces in case.cylinders
-    ):
+    have_cycles = [forces.indicated and forces.indicated.cycles for forces in case.cylinders]
+    if cylinders and not any(have_cycles):
         raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
-    each = zip(cylinders, case.cylinders)
-    return [one._replace(tables=_cycle_table(forces)) for one, forces in each], ()
+    with_cycles = [
+        subject._replace(tables=_cycle_table(forces))
+        for subject, forces in zip(cylinders, case.cylinders)
+    ]
+    return with_cycles, ()
 
 
 def _piston_table(forces: CylinderForces) -> Iterator[Places]:
     """Yield work, power and mean pressure of each piston of a rod that has several."""
     if not forces.pistons:
         return
-    declared, scope = forces.pistons[0].lists.key_values("forces"), f"{forces.drive.name}."
-    each = ((piston.name.removeprefix(scope), piston.key_values()) for piston in forces.pistons)
-    rows: list[PlaceRow] = [
-        ((name,), {id: figure.value for id, figure in found.items()}) for name, found in each
-    ]
+    declared = forces.pistons[0].lists.key_values("forces")
+    rows: list[PlaceRow] = []
+    for piston in forces.pistons:
+        name = piston.name.removeprefix(f"{forces.drive.name}.")
+        values = {id: figure.value for id, figure in piston.key_values().items()}
+        rows.append(((name,), values))
     yield Places("pistons", "Each piston", ("piston",), declared, rows, headed=True)
 
 
 def _cycle_table(forces: CylinderForces) -> Iterator[Places]:
-    cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
+    """Yield the measured cycles of a trace, one to a line."""
+    cycles = forces.indicated and forces.indicated.cycles
     if not cycles:
         return
     from kurbel.solver.indicated import OF_CYCLES
 
-    declared = {
-        cycle.id: cycle.absolute() if gas and gas.absolute else cycle for cycle in OF_CYCLES
-    }
-    columns = zip(*(cycle.tolist() for cycle in cycles))
-    rows: list[PlaceRow] = [
-        ((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)
-    ]
+    gas = forces.drive.own_gas
+    is_absolute = bool(gas and gas.absolute)
+    declared = {}
+    for quantity in OF_CYCLES:
+        declared[quantity.id] = quantity.absolute() if is_absolute else quantity
+    rows: list[PlaceRow] = []
+    for number, values in enumerate(zip(*(values.tolist() for values in cycles)), 1):
+        rows.append(((str(number),), dict(zip(declared, values))))
     yield Places("cycles", "Measured cycles", ("cycle",), declared, rows, headed=True)
 
 
@@ -150,12 +177,10 @@ def _forces_notes(case: Case) -> Iterator[str]:
             "'reciprocating' is one sum, with the connecting rod's share: P_G counts all of it; give the parts to leave"
             " that share out."
         )
-    ends = [
-        end
-        for forces in case.cylinders
-        for gas in forces.drive.gas
-        for end in (gas.head, gas.crank)
-    ]
+    ends = list[Pressure | None]()
+    for forces in case.cylinders:
+        for gas in forces.drive.gas:
+            ends += [gas.head, gas.crank]
     if any(end and end.traced and end.trace.even for end in ends):
         yield (
             "ΔA/A of a trace is not a rounding error: the indicated work is by the trapezoid rule on the samples, "

@@ -52,30 +52,31 @@ def _harmonics(
     speeds: in revolutions per second, at which the orders of the whole machine are shown, too. Raises UsageError if
     nothing turns the shaft.
     """
-    machine, found = case.machine, case.harmonics(requested_orders(case.machine, orders))
+    machine = case.machine
+    harmonics = case.harmonics(requested_orders(machine, orders))
     if speeds is not None and not machine.speed:
         raise UsageError(
             "--speeds: the inertia forces are scaled from those at the 'speed' of the machine; give one"
         )
-    cylinders = [
-        Subject(
-            cylinder.forces.drive.name,
-            left_out=left_out(machine, cylinder.forces.drive.cylinder),
-            tables=_orders_of_cylinder(cylinder),
+    cylinders = []
+    for cylinder in harmonics.cylinders:
+        drive = cylinder.forces.drive
+        reasons = left_out(machine, drive.cylinder)
+        cylinders.append(
+            Subject(drive.name, left_out=reasons, tables=_orders_of_cylinder(cylinder))
         )
-        for cylinder in found.cylinders
-    ]
-    no_masses = "no masses, or no speed given" if cylinders else "the effort is given as a torque"
-    apart = missing({"gas and inertia apart": no_masses if found.machine.inertia is None else ""})
+    why = ""
+    if harmonics.machine.inertia is None:
+        why = "no masses, or no speed given" if cylinders else "the effort is given as a torque"
     whole = Subject(
         "whole machine",
-        found,
-        left_out=chain(flywheel_left_out(machine), apart),
+        harmonics,
+        left_out=chain(flywheel_left_out(machine), missing({"gas and inertia apart": why})),
         warnings=of_machine(case),
-        tables=_orders_of_machine(found, speeds or (), machine.speed),
+        tables=_orders_of_machine(harmonics, speeds or (), machine.speed),
         whole=True,
     )
-    return [*cylinders, whole], _harmonics_notes(found)
+    return [*cylinders, whole], _harmonics_notes(harmonics)
 
 
 HARMONICS = Functions("Harmonics of the turning effort", whole_machine("harmonics"), own=_harmonics)
@@ -92,59 +93,61 @@ def requested_orders(machine: Machine, requested: Sequence[float] | None) -> Arr
             most = f"at most {_HIGHEST_ORDER} periods per turn"
             raise UsageError(f"--orders {order:g}: an order is more than 0 and {most}")
         if not is_whole(order * turns):
-            known = {1: "1, 2, 3, …", 2: "½, 1, 1½, …"}.get(
-                turns, f"1/{turns}, 2/{turns}, 3/{turns}, …"
-            )
+            usual = {1: "1, 2, 3, …", 2: "½, 1, 1½, …"}
+            listed = usual.get(turns, f"1/{turns}, 2/{turns}, 3/{turns}, …")
             cycle = f"the cycle repeats after {360 * turns} degrees"
-            raise UsageError(f"--orders {order:g}: {cycle} and has the orders {known}")
+            raise UsageError(f"--orders {order:g}: {cycle} and has the orders {listed}")
     return None if requested is None else np.unique(requested)
 
 
-def _harmonics_notes(found: MachineOrders) -> Iterator[str]:
-    torques = {
-        f"The torque of {cylinder.forces.drive.name}": cylinder.own for cylinder in found.cylinders
-    }
-    torques["The turning effort"] = found.machine
-    yield from (
-        f"{what} has none of these orders: they are all zero."
-        for what, one in torques.items()
-        if _uniform(one)
-    )
-    if not all(map(_uniform, torques.values())):
+def _harmonics_notes(harmonics: MachineOrders) -> Iterator[str]:
+    """Yield which torques are without orders, and what the symbols mean."""
+    torques = {}
+    for cylinder in harmonics.cylinders:
+        torques[f"The torque of {cylinder.forces.drive.name}"] = cylinder.own
+    torques["The turning effort"] = harmonics.machine
+    for what, torque in torques.items():
+        if _is_uniform(torque):
+            yield f"{what} has none of these orders: they are all zero."
+    if not all(map(_is_uniform, torques.values())):
         yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
-        if found.machine.inertia is not None:
+        if harmonics.machine.inertia is not None:
             yield (
                 "M_b grows with the square of the speed; M_g, of gas, weight and friction, is the same at every speed."
             )
 
 
-def _uniform(torque: Orders) -> bool:
-    """Whether every order is zero, at every speed; then a note says so, in place of a table."""
-    return not any(one.any() for one in (torque.gas, torque.inertia) if one is not None)
+def _is_uniform(torque: Orders) -> bool:
+    """Return whether every order is zero, at every speed; then a note says so, in place of a table."""
+    has_inertia = torque.inertia is not None and bool(torque.inertia.any())
+    return not (has_inertia or torque.gas.any())
 
 
 def _orders_of_cylinder(cylinder: CylinderOrders) -> Iterator[Places]:
     name, torque = cylinder.forces.drive.name, cylinder.own
     rows = _order_rows(torque, cylinder.area)
     title = f"Orders of the torque of {name}, φ from its own inner dead centre"
-    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=_uniform(torque))
+    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=_is_uniform(torque))
 
 
 def _orders_of_machine(
-    found: MachineOrders, speeds: Sequence[float], working: float | None
+    harmonics: MachineOrders, speeds: Sequence[float], working: float | None
 ) -> Iterator[Places]:
     """Yield the orders of the turning effort at the working speed, and those at others, in revolutions per second."""
-    torque, uniform = found.machine, _uniform(found.machine)
+    torque = harmonics.machine
+    is_uniform = _is_uniform(torque)
     title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
-    rows = _order_rows(torque, major=found.major_orders or ())
-    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
+    rows = _order_rows(torque, major=harmonics.major_orders or ())
+    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=is_uniform)
+    if not speeds:
+        return
     rows = []
     for speed in speeds:
-        each = zip(torque.orders.tolist(), torque.at_speed(speed / (working or speed)).tolist())
-        rows += [(("",), {"speed": speed, **_of_order(*order)}) for order in each]
-    if speeds:
-        title = "Orders of the turning effort at other speeds"
-        yield Places("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
+        amplitudes = torque.at_speed(speed / (working or speed)).tolist()
+        for order, amplitude in zip(torque.orders.tolist(), amplitudes):
+            rows.append((("",), {"speed": speed, **_of_order(order, amplitude)}))
+    title = "Orders of the turning effort at other speeds"
+    yield Places("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, in_note=is_uniform)
 
 
 def _order_rows(
@@ -165,6 +168,7 @@ def _order_rows(
 
 def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
     """Return one order: Re(M e^{iνφ}) = a cos νφ + b sin νφ = |M| cos(νφ − ε), ε above −180° up to 180°."""
-    a, b = amplitude.real, -amplitude.imag
+    a = amplitude.real
+    b = -amplitude.imag
     phase = math.degrees(math.atan2(b, a)) + 0.0 if amplitude else None
     return {"order": order, "M_cos": a, "M_sin": b, "M_amplitude": abs(amplitude), "M_phase": phase}

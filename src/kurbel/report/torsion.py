@@ -1,7 +1,7 @@
 """The report of `kurbel torsion`: natural vibrations, Holzer's table, critical speeds, forced vibration."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 
 from kurbel.declared.unit_systems import show
@@ -99,14 +99,14 @@ _MODES = 3
 """Modes whose critical speeds are listed unless others are requested."""
 
 
-def _limited(found: ShaftVibration) -> ShaftVibration:
+def _limited(vibration: ShaftVibration) -> ShaftVibration:
     """Return the vibration; raises NoSolutionError if it grows without limit."""
-    if found.vibration is not None and found.vibration.endless.any():
+    if vibration.vibration is not None and vibration.vibration.endless.any():
         raise NoSolutionError(
             "an order of the torque meets a natural vibration that is hardly damped: give 'damping'; or segments of "
             "the shaft are too unequal to compute with: check the units of their stiffnesses"
         )
-    return found
+    return vibration
 
 
 def _torsion(
@@ -128,44 +128,40 @@ def _torsion(
         raise UsageError(
             "--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out"
         )
-    found = case.torsion_of(requested_orders(case.machine, orders))
-    critical = found.critical_speeds(modes, _HIGHEST_CRITICAL if orders is None else math.inf)
-    _limited(found)
-    rows = _critical_rows(found, critical)
+    vibration = case.torsion_of(requested_orders(case.machine, orders))
+    critical = vibration.critical_speeds(modes, _HIGHEST_CRITICAL if orders is None else math.inf)
+    _limited(vibration)
+    rows = _critical_rows(vibration, critical)
     tables = [
-        _modes_table(found),
-        _holzer_table(found, mode or 1, at),
+        _modes_table(vibration),
+        _holzer_table(vibration, mode or 1, at),
         Places("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows),
     ]
-    if found.segments:
-        title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
-        of_pieces: list[PlaceRow] = [((piece.name,), _of_piece(piece)) for piece in found.segments]
-        tables.append(Places("pieces", title, ("piece",), PIECES, of_pieces))
-    if speeds is not None and not found.obstacle:
-        by_speed: list[PlaceRow] = [
-            ((found.segment_name(number),), {"speed": speed, **amplitudes})
-            for number, piece in enumerate(zip(*_at_speeds(found, speeds)))
-            for speed, amplitudes in zip(speeds, piece)
+    if vibration.segments:
+        these = "" if vibration.steady else "these "
+        title = f"Torques and stresses at the working speed, all {these}orders together"
+        of_segments: list[PlaceRow] = [
+            ((segment.name,), _of_piece(segment)) for segment in vibration.segments
         ]
-        title = "Vibratory torque over the speed, all these orders together"
-        tables.append(Places("speeds", title, ("piece",), SPEEDS, by_speed))
+        tables.append(Places("pieces", title, ("piece",), PIECES, of_segments))
+    if speeds is not None and not vibration.obstacle:
+        tables.append(_speeds_table(vibration, speeds))
 
+    subjects = []
+    if frame.columns:
+        subjects = [Subject(segment.name, at=segment.at) for segment in vibration.segments]
     whole = Subject(
         "shaft line",
-        found,
-        left_out=torsion_left_out(found),
-        warnings=chain(_near_speeds(found, critical), of_machine(case)),
+        vibration,
+        left_out=torsion_left_out(vibration),
+        warnings=chain(_near_speeds(vibration, critical), of_machine(case)),
         tables=tables,
         whole=True,
     )
-    pieces = (
-        [Subject(segment.name, at=segment.at) for segment in found.segments]
-        if frame.columns
-        else []
-    )
     with_torque = ["M_vibratory" in values for _, values in rows]
-    notes = _torsion_notes(found, orders is None, any(with_torque) and not all(with_torque))
-    return [*pieces, whole], notes
+    are_some_hidden = any(with_torque) and not all(with_torque)
+    notes = _torsion_notes(vibration, orders is None, are_some_hidden)
+    return [*subjects, whole], notes
 
 
 TORSION = Functions(
@@ -175,18 +171,18 @@ TORSION = Functions(
 )
 
 
-def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[PlaceRow]:
-    """Return critical speeds, with the largest amplitudes of all pieces where one is reached and damped."""
-    reached = [one for one in critical if found.met(one)]
-    of_reached = dict(zip(reached, _at_speeds(found, [one.speed for one in reached])))
+def _critical_rows(vibration: ShaftVibration, critical: Sequence[Critical]) -> list[PlaceRow]:
+    """Return critical speeds, with the largest amplitudes of all segments where one is reached and damped."""
+    reached = [speed for speed in critical if vibration.met(speed)]
+    at_reached = _at_speeds(vibration, [speed.speed for speed in reached])
+    amplitudes_of = dict(zip(reached, at_reached))
     rows: list[PlaceRow] = []
-    for one in critical:
-        values = {id: float(value) for id, value in one._asdict().items() if value is not None}
-        for amplitudes in of_reached.get(one, ()):
-            values |= {
-                id: max(values.get(id, 0.0), amplitude) for id, amplitude in amplitudes.items()
-            }
-        rows.append((("near" if one.near else "",), values))
+    for speed in critical:
+        values = {id: float(value) for id, value in speed._asdict().items() if value is not None}
+        for amplitudes in amplitudes_of.get(speed, ()):
+            for id, amplitude in amplitudes.items():
+                values[id] = max(values.get(id, 0.0), amplitude)
+        rows.append((("near" if speed.near else "",), values))
     return rows
 
 
@@ -195,9 +191,22 @@ def _modes_table(vibration: ShaftVibration) -> Places:
     rows: list[PlaceRow] = []
     for index, omega in enumerate(vibration.modes.omegas.tolist()):
         mode = vibration.first + index
+        text = _nodes_text(vibration, index) if mode else "rotation"
         values = {"mode": float(mode), "frequency": omega / (2 * math.pi), "omega_natural": omega}
-        rows.append(((_nodes_text(vibration, index) if mode else "rotation",), values))
+        rows.append(((text,), values))
     return Places("modes", "Natural frequencies", ("nodes",), MODES, rows)
+
+
+def _speeds_table(vibration: ShaftVibration, speeds: Sequence[float]) -> Places:
+    """Return the amplitudes of every segment over the speed."""
+    at_speeds = list(_at_speeds(vibration, speeds))
+    rows: list[PlaceRow] = []
+    for number in range(len(vibration.line.segments)):
+        name = vibration.segment_name(number)
+        for speed, amplitudes in zip(speeds, at_speeds):
+            rows.append(((name,), {"speed": speed, **amplitudes[number]}))
+    title = "Vibratory torque over the speed, all these orders together"
+    return Places("speeds", title, ("piece",), SPEEDS, rows)
 
 
 def _nodes_text(vibration: ShaftVibration, index: int) -> str:
@@ -212,7 +221,7 @@ def _nodes_text(vibration: ShaftVibration, index: int) -> str:
             where.append(f"{vibration.segment_name(segment)} at {share:.2f}")
         else:
             where.append(f"{name} + {share:.2f}")
-    count = f"{len(where)} node{'' if len(where) == 1 else 's'}"
+    count = "1 node" if len(where) == 1 else f"{len(where)} nodes"
     return f"{count}: {', '.join(where)}" if 0 < len(where) <= 2 else count
 
 
@@ -270,20 +279,22 @@ def _holzer_segment(
     return {"torque_sum": torque, "stiffness": stiffness, "twist": twist}
 
 
-def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[dict[str, float]]]:
-    """Yield for each speed vibratory torque and stress of every piece, nothing at an undamped resonance."""
+def _at_speeds(
+    vibration: ShaftVibration, speeds: Sequence[float]
+) -> Iterator[list[dict[str, float]]]:
+    """Yield for each speed vibratory torque and stress of every segment, nothing at an undamped resonance."""
     if not speeds:
         return
-    vibration = found.forced(speeds)
-    factors = [stress(found.line, piece) for piece in range(len(found.line.segments))]
-    for torques, endless in zip(vibration.vibratory.T.tolist(), vibration.endless):
-        yield [
-            {}
-            if endless
-            else {"M_vibratory": torque}
-            | ({} if factor is None else {"tau_vibratory": factor * torque})
-            for torque, factor in zip(torques, factors)
-        ]
+    forced = vibration.forced(speeds)
+    factors = [stress(vibration.line, number) for number in range(len(vibration.line.segments))]
+    for torques, is_endless in zip(forced.vibratory.T.tolist(), forced.endless):
+        amplitudes = []
+        for torque, factor in zip(torques, factors):
+            values = {} if is_endless else {"M_vibratory": torque}
+            if factor is not None and not is_endless:
+                values["tau_vibratory"] = factor * torque
+            amplitudes.append(values)
+        yield amplitudes
 
 
 def _of_piece(piece: SegmentTorque) -> dict[str, float]:
@@ -292,18 +303,19 @@ def _of_piece(piece: SegmentTorque) -> dict[str, float]:
     return {id: value for id, value in values if value is not None}
 
 
-def torsion_left_out(found: ShaftVibration) -> Iterator[LeftOut]:
+def torsion_left_out(vibration: ShaftVibration) -> Iterator[LeftOut]:
     """Yield what torsional vibration leaves out."""
-    bare = [
-        found.segment_name(index)
-        for index, piece in enumerate(found.line.segments)
-        if not piece.sections
-    ]
-    if found.obstacle:
-        yield LeftOut("forced vibration, torques and stresses", found.obstacle)
-    elif bare:
-        yield LeftOut(f"stress in {', '.join(bare)}", "no diameter given")
-    if found.machine.cylinders:
+    if vibration.obstacle:
+        yield LeftOut("forced vibration, torques and stresses", vibration.obstacle)
+    else:
+        names = [
+            vibration.segment_name(number)
+            for number, segment in enumerate(vibration.line.segments)
+            if not segment.sections
+        ]
+        if names:
+            yield LeftOut(f"stress in {', '.join(names)}", "no diameter given")
+    if vibration.machine.cylinders:
         why = "the mean is used; parametric excitation is not computed"
         yield LeftOut("change of the inertia over the turn", why)
 
@@ -315,26 +327,27 @@ def torsion_warnings(case: Case) -> Iterator[str]:
     )
 
 
-def _near_speeds(found: ShaftVibration, critical: Sequence[Critical]) -> Iterator[str]:
+def _near_speeds(vibration: ShaftVibration, critical: Sequence[Critical]) -> Iterator[str]:
     """Yield, mode by mode, the critical speeds near the working speed, the strongest first."""
-    for mode in sorted({one.mode for one in critical}):
-        near = sorted(
-            (one for one in critical if one.mode == mode and one.near), key=lambda one: -one.share
-        )
-        if near and found.machine.speed is not None:
-            listed = ", ".join(
-                f"{one.order:g} ({100 * (one.distance or 0.0):+.3g} %)" for one in near
-            )
+    working = vibration.machine.speed
+    if working is None:
+        return
+    for mode in sorted({speed.mode for speed in critical}):
+        near = [speed for speed in critical if speed.mode == mode and speed.near]
+        near.sort(key=lambda speed: -speed.share)
+        if near:
+            percents = [f"{100 * (speed.distance or 0.0):+.3g} %" for speed in near]
+            texts = [f"{speed.order:g} ({percent})" for speed, percent in zip(near, percents)]
             plural = "s" if len(near) > 1 else ""
             yield (
-                f"mode {mode}: critical speed{plural} of order{plural} {listed} within 10 % of the working speed "
-                f"{show(found.machine.speed, 'speed')}"
+                f"mode {mode}: critical speed{plural} of order{plural} {', '.join(texts)} within 10 % of the "
+                f"working speed {show(working, 'speed')}"
             )
 
 
-def _torsion_notes(found: ShaftVibration, usual: bool, hidden: bool) -> Iterator[str]:
+def _torsion_notes(vibration: ShaftVibration, usual: bool, hidden: bool) -> Iterator[str]:
     """Yield the notes; usual: no orders are requested; hidden: some critical speeds have no amplitude, others have."""
-    line = found.line
+    line = vibration.line
     if usual:
         yield f"Critical speeds of orders up to {_HIGHEST_CRITICAL}; --orders lists others, --modes more modes."
     if hidden:
@@ -342,7 +355,7 @@ def _torsion_notes(found: ShaftVibration, usual: bool, hidden: bool) -> Iterator
             "Torques and stresses at a critical speed include all orders, when running there; – marks a speed that the "
             f"machine does not reach, beyond {RUN_UP:g} times the working speed, and a mode that is hardly damped."
         )
-    if found.chain.segment_inertias.any():
+    if vibration.chain.segment_inertias.any():
         yield "Segments have inertia of their own; Σω²JΘ does not add up row by row."
     ratios = {segment.ratio for segment in line.segments} - {1.0}
     if ratios:
@@ -351,17 +364,21 @@ def _torsion_notes(found: ShaftVibration, usual: bool, hidden: bool) -> Iterator
             f"Masses and stiffnesses beyond the {gear} are referred to the cranks' shaft by u²; "
             "torques are true ones."
         )
-    if not found.machine.cylinders and found.machine.effort:
+    if not vibration.machine.cylinders and vibration.machine.effort:
         yield f"The effort acts on {line.masses[0].name}, the first mass."
-    if found.segments:
-        orders, more = "all orders", ""
-        if found.summed is not None:
-            names = [f"{order:g}" for order in found.summed]
-            listed = f"order{'s' if len(names) > 1 else ''} {', '.join(names)}"
-            orders = (
-                listed if len(names) <= 4 else f"{len(names)} orders from {names[0]} to {names[-1]}"
-            )
-        if found.remainder is not None:
-            more = f" (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
-        taker = "what holds it" if found.chain.is_held else line.masses[line.load].name
+    if vibration.segments:
+        orders = "all orders" if vibration.summed is None else _listed_orders(vibration.summed)
+        more = ""
+        if vibration.remainder is not None:
+            remainder = show(vibration.remainder, "torque", figures=2)
+            more = f" (higher ones add about {remainder} or less)"
+        taker = "what holds it" if vibration.chain.is_held else line.masses[line.load].name
         yield f"Forced vibration: {orders} together{more}, about uniform rotation; the mean torque goes to {taker}."
+
+
+def _listed_orders(orders: Iterable[float]) -> str:
+    """Return the orders that are summed, of many the first and the last."""
+    names = [f"{order:g}" for order in orders]
+    if len(names) > 4:
+        return f"{len(names)} orders from {names[0]} to {names[-1]}"
+    return f"order{'s' if len(names) > 1 else ''} {', '.join(names)}"

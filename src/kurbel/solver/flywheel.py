@@ -13,14 +13,14 @@ from __future__ import annotations
 
 import math
 from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices, Number
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.numerics.arithmetic import every, some, total, where
+from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces, refined
@@ -32,6 +32,7 @@ from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.motion import every_dead_centre
 from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
 from kurbel.solver.state import State
+from kurbel.solver.total_work import TotalWork
 
 if TYPE_CHECKING:
     from kurbel.solver.chapters.coupling import CouplingTorque, ElasticCoupling
@@ -121,14 +122,6 @@ class TurningState(AtAngles):
             if found is None
             else self._turning.effort.at(*found, self.phi, self.within, self._machine)
         )
-
-
-class PistonWorks(NamedTuple):
-    """Indicated work of driving and of driven pistons, negative, and work of what rams drive, negative, in J."""
-
-    driving: Any
-    driven: Any
-    resisted: Any
 
 
 class MachineTurning(Results):
@@ -264,75 +257,12 @@ class MachineTurning(Results):
         "Power at the shaft, mean torque times nominal angular velocity",
         lambda one: one.M_mean * one.omega if one.turns and one.knows_mean else None,
     )
-    work_indicated = value(
-        "A_Σ",
-        "energy",
-        "Indicated work of all driving pistons per cycle; of all driven ones if none drives",
-        lambda one: one.indicated_work,
-        plain="A_sum",
-    )
-    power_indicated = value(
-        "N_Σ",
-        "power",
-        "Indicated power of the whole machine: of all driving pistons; of all driven ones if none drives",
-        lambda one: one.indicated_power,
-        plain="N_sum",
-    )
-    mechanical_efficiency = value(
-        "η_g",
-        "ratio",
-        "Mechanical efficiency of the whole machine: work at the shaft and of driven pistons over the work put in",
-        lambda one: one.useful_share,
-        unless=lambda one: (
-            one.useful_share is not None and every(abs(one.useful_share - 1) <= 1e-12)
-        ),
-    )
 
-    @cached_property
-    def piston_works(self) -> PistonWorks | None:
-        """The work of all cylinders per cycle of the machine; None without pistons."""
+    @part(TotalWork)
+    def total_work(self) -> TotalWork:
+        """Work of all pistons, and the mechanical efficiency."""
         effort = self.effort
-        if effort.given is not None or effort.swing is not None:
-            return None
-        turns = effort.cycle / 360.0
-        works = list[PistonWorks]()
-        for cylinder in effort.cylinders:
-            if cylinder.work is None:
-                continue
-            cycles = turns / cylinder.drive.revolutions
-            resisted = cylinder.resistance_work
-            resisted = 0.0 if resisted is None else resisted * cycles
-            works.append(
-                PistonWorks(cylinder.work_driving * cycles, cylinder.work_driven * cycles, resisted)
-            )
-        return PistonWorks(*(total(*column) for column in zip(*works))) if works else None
-
-    @property
-    def indicated_work(self) -> Any:
-        """Indicated work in J per cycle of the driving pistons; of the driven ones if none drives."""
-        works = self.piston_works
-        return works and where(works.driving > 0, works.driving, works.driven)
-
-    @property
-    def indicated_power(self) -> Any:
-        """Indicated power in W."""
-        work = self.indicated_work
-        if work is None or not self.turns:
-            return None
-        seconds_times_omega = math.radians(self.effort.cycle)
-        return work * self.omega / seconds_times_omega
-
-    @property
-    def useful_share(self) -> Any:
-        """Work given off at the shaft and by driven pistons over that put in by driving ones and at the shaft."""
-        works, work = self.piston_works, self.work_shaft
-        if works is None or work is None:
-            return None
-        put_in = works.driving + where(work < 0, -work, 0.0)
-        given_off = where(work > 0, work, 0.0) - works.driven - works.resisted
-        if every(put_in == 0):
-            return None
-        return given_off / where(put_in == 0, math.nan, put_in)
+        return TotalWork(self.machine, effort.cylinders, lambda: effort.result(effort.mean))
 
     _searched = ExtremesOfColumns()
 

@@ -375,7 +375,7 @@ class CylinderForces(SampledCylinder, Results):
     friction_loss = value(
         "e_f",
         "ratio",
-        "Work lost by friction over that of the driving pistons",
+        "Friction loss: work lost over that of the driving pistons",
         lambda forces: _over_driving(forces, forces.friction_work),
     )
     friction_force_mean = value(

@@ -14,7 +14,6 @@ A measured trace is in `kurbel.traces.pressure`. The force is P = p_H A_H − p_
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, ClassVar, Literal, Union
@@ -50,7 +49,6 @@ _BITS = 100
 # the process of a chamber
 
 
-@dataclass(frozen=True, eq=False)
 class Process:
     """The pressure in a chamber over one cycle, from the (firing) dead centre on.
 
@@ -60,9 +58,10 @@ class Process:
     volume over stroke volume.
     """
 
-    lines: Array
-    lift: float = 0.0
-    clearance: float = math.inf
+    def __init__(self, lines: Array, lift: float = 0.0, clearance: float = math.inf) -> None:
+        self.lines = lines
+        self.lift = lift
+        self.clearance = clearance
 
     @cached_property
     def area(self) -> float:

@@ -390,6 +390,9 @@ def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) 
     """
     left_out = _left_out_in_short(report.all_parts)
     report = shown_once(report)
+    if ids and report.whole and report.command == "forces" and len(report.cylinders) == 1:
+        # the totals of the only cylinder are near to its own
+        report = report._replace(whole=None)
     order = {id: number for number, id in enumerate(ids)}
     of_whole = report.whole is not None and bool(report.whole.place_tables)
 
