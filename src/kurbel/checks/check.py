@@ -83,6 +83,7 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
         Topic("Cranks", tuple(_crank_entries(machine))),
         Topic("Whole machine", (*_turning_entries(machine), *warnings)),
         Topic("Crankshaft", tuple(_crankshaft_entries(case))),
+        Topic("Oil film", tuple(_oil_film_entries(case))),
         Topic("Balance", tuple(_balance_entries(case))),
         Topic("Shaft line", tuple(_shaft_entries(case))),
         Topic("Delivery", tuple(_delivery_entries(case))),
@@ -236,6 +237,28 @@ def _crankshaft_entries(case: Case) -> Iterator[CheckEntry]:
         return
     computed = "forces on the bearings, stresses in pin and webs"
     yield from _computed(computed, strength_left_out(machine), path)
+
+
+def _oil_film_entries(case: Case) -> Iterator[CheckEntry]:
+    """Yield the warnings on oil films, and what is computed of them."""
+    if case.machine.oil_film is None:
+        return
+    from kurbel.notes.oil_film import film_warnings
+
+    path = ("oil_film",)
+    try:
+        bearings = case.bearings.parts
+    except KurbelError as error:
+        yield _left_out(f"oil film: {error}", path)
+        return
+    for text in as_far_as_solved(film_warnings(case), "bearings"):
+        yield CheckEntry("oil film", text, "warning", path)
+    with_film = [bearing.name for bearing in bearings if bearing.oil and not bearing.film_obstacle]
+    if with_film:
+        yield CheckEntry("computed", f"oil film of {together(with_film)}")
+    for bearing in bearings:
+        if bearing.film_obstacle:
+            yield _left_out(f"oil film of {bearing.name}: {bearing.film_obstacle}", path)
 
 
 def _balance_entries(case: Case) -> Iterator[CheckEntry]:
