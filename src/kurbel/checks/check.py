@@ -186,14 +186,16 @@ def _left_out(text: str, path: Path = ()) -> CheckEntry:
 
 def _crank_entries(machine: Machine) -> Iterator[CheckEntry]:
     """Yield for each of several cylinders by which angle it follows the first, and where its crank pin is."""
-    if len(machine.cylinders) == 1:
+    if len(machine.cylinders) < 2:
         return
+    first = machine.cylinders[0]
     is_banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
     for cylinder in machine.cylinders:
         text = f"{cylinder.crank_position:g} deg after the first, "
         if is_banked:
             text += f"stroke line at {cylinder.bank_angle:g} deg: "
-        lag = rounded_within_cycle(pin_lag(cylinder, machine.cylinders[0]), 360.0)
+        pin_difference = pin_lag(cylinder, first) - pin_lag(first, first)
+        lag = rounded_within_cycle(pin_difference, 360.0)
         text += f"crank pin {lag:g} deg behind the first"
         yield CheckEntry(cylinder.name, text)
 

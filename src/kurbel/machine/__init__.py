@@ -134,6 +134,15 @@ def _equal_cylinders() -> type[EqualCylinders]:
     return EqualCylinders
 
 
+def _throw_of_first(cylinders: tuple[Cylinder, ...]) -> Iterator[Rule]:
+    """Yield the rule that the throws count from that of cylinder 1."""
+    if not cylinders or cylinders[0].throw_angle is None:
+        return
+    message = "the throws count from that of cylinder 1; give 0 deg, or leave it out"
+    is_turned = np.not_equal(cylinders[0].throw_angle % 360.0, 0.0)
+    yield Rule(("cylinders", 0, "throw_angle"), is_turned, message)
+
+
 class LoadCase(Record):
     """A load case: values by dotted key that replace those of the file."""
 
@@ -385,6 +394,7 @@ class Machine(Record):
             frictions = [cylinder.friction for cylinder in self.cylinders]
             for rule in self.oil_film.rules_beside(self.crankshaft, frictions):
                 yield rule.below("oil_film")
+        yield from _throw_of_first(self.cylinders)
         yield from crowded(self.cylinders)
         for key, diagram in (
             ("effort", self.effort),

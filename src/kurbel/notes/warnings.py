@@ -128,7 +128,10 @@ _SAME_ANGLE = 1e-6  # degrees
 
 
 def pin_warnings(machine: Machine) -> Iterator[str]:
-    """Yield warnings on cylinders at one place along the shaft that share no crank pin."""
+    """Yield warnings on cylinders at one place along the shaft that share no crank pin.
+
+    Not where the file gives the throws, as of split pins.
+    """
     positions = []
     for cylinder in machine.cylinders:
         if cylinder.axial_position is not None:
@@ -139,7 +142,8 @@ def pin_warnings(machine: Machine) -> Iterator[str]:
         first = machine.cylinders[0]
         difference = pin_lag(neighbour, first) - pin_lag(cylinder, first)
         angle = abs(math.remainder(difference, 360.0))
-        if next_z - z <= _SAME_POSITION and angle > _SAME_ANGLE:
+        has_throw = cylinder.throw_angle is not None or neighbour.throw_angle is not None
+        if next_z - z <= _SAME_POSITION and angle > _SAME_ANGLE and not has_throw:
             yield (
                 f"{cylinder.name} and {neighbour.name} are at one place along the shaft, "
                 f"but their throws are {show(angle, 'angle')} apart: they share no crank pin. "
@@ -219,14 +223,15 @@ _GOOD = 0.85
 
 
 def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
-    """Yield the one warning on each trace of a cylinder, if any."""
+    """Yield the warnings on each trace of a cylinder, the strongest first."""
     for gas in forces.drive.gas:
         for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
             if pressure and pressure.traced:
-                from kurbel.traces.checks import doubt
+                from kurbel.traces.checks import doubts
 
-                text = doubt(pressure.trace, pressure.setting, pressure.each)
-                if text:
+                indicator = gas.piston.indicator
+                role = indicator.role if indicator else None
+                for text in doubts(pressure.trace, pressure.setting, pressure.each, role):
                     yield f"{gas.piston.name}, {end}: {text}"
 
 

@@ -168,7 +168,7 @@ class Bearing(Results):
     rubbing_speed_mean = value("v_L,m", "velocity", "Mean sliding speed of the surfaces")
     pressure_velocity = value("k_L", "pressure_velocity", "Mean pressure times mean speed, p v")
     work_rubbing = value(
-        "A_f,L", "energy", "Friction work per cycle", lambda one: one.friction_work()
+        "A_f,L", "energy", "Friction work per cycle", lambda bearing: bearing.friction_work()
     )
 
     @part(_oil_film, there=lambda bearing: bearing.oil is not None)
