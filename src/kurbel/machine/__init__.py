@@ -29,6 +29,7 @@ from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
 from kurbel.declared.reading import REFUSED, text_in_one_line
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
+from kurbel.declared.units import MOST_SHAFT_ITEMS
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.cylinder import MOST_TURNS, Cylinder, counterweights, crowded
 from kurbel.machine.indicator import Chamber
@@ -263,7 +264,9 @@ class Machine(Record):
         _locomotive, "Driven wheels, for hammer blow and swaying couple", absent="no locomotive"
     )
     shaft: ShaftLine | None = field(
-        Listing(OneOf(Choice(("ground", "flywheel")), RecordForm(_shaft_part))),
+        Listing(
+            OneOf(Choice(("ground", "flywheel")), RecordForm(_shaft_part)), most=MOST_SHAFT_ITEMS
+        ),
         "Shaft line for torsional vibration, in order along the shaft: masses, shaft segments between them, gears, "
         "branches, `flywheel` (that of the machine) and `ground` (a fixed end)",
         absent="no torsional vibration",

@@ -157,6 +157,7 @@ class FilmEquation:
 
     unknowns = 2
     bounded: int | None = None
+    modal = None
 
     def __init__(self, shape: FilmShape, pieces: Pieces, course: Array) -> None:
         self._pieces = pieces
