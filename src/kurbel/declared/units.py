@@ -191,6 +191,17 @@ KINDS = {
         1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"
     ),
     "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K", written="287 J/kg K"),
+    "viscosity": Kind(
+        1e-6,
+        1e3,
+        "Pa s, mPa s, cP, P, N s/m2, kgf s/m2, lbf s/in2, reyn",
+        "Pa s",
+        "mPa s",
+        "cP",
+        "reyn",
+        "30 mPa s",
+    ),
+    "film": Kind(1e-12, 1e9, _LENGTHS, "m", "um", "um", "in", "3 um"),
     "spring": Kind(
         1e-15,
         1e3,
@@ -212,6 +223,8 @@ MOST_POINTS = 500_000
 """Points or samples of one diagram."""
 MOST_ITEMS = 100
 """Items of one list, such as cylinders."""
+MOST_SHAFT_ITEMS = 400
+"""Items of a shaft line: masses, and the segments between them."""
 
 
 def range_of(kind: str) -> str:
@@ -284,6 +297,10 @@ _FACTORS: dict[str, UnitFactor] = {
     "J": (1, 1),
     "W": (1, 1),
     "PS": (75 * GRAVITY, 1),
+    # viscosity in Pa s
+    "P": (1, 10),
+    "cP": (1, 1e3),
+    "reyn": (_LBF, _INCH * _INCH),
     "hp": (550 * _LBF * 3048, 1e4),
 }
 """Single units, of which those of every kind are made."""
@@ -417,7 +434,12 @@ def unit_factor(unit: str, kind: str) -> UnitFactor:
 
 def kind_name(kind: str) -> str:
     """Return what a kind is called in messages."""
-    special = {"gd2": "GD²", "speed": "speed of rotation", "unbalance": "mass-times-radius"}
+    special = {
+        "gd2": "GD²",
+        "speed": "speed of rotation",
+        "unbalance": "mass-times-radius",
+        "film": "film thickness",
+    }
     return special.get(kind, kind.replace("_", " "))
 
 
@@ -553,11 +575,19 @@ _SPOKEN = (
 )
 """How people write some units, and what these are here."""
 
+_KINEMATIC = ("mm2/s", "cm2/s", "m2/s", "cSt", "St", "ft2/s", "in2/s")
+"""Units of kinematic viscosity, by which oils are sold."""
+
 
 def unit_hint(name: str, kind: str) -> str:
     """Return what to write instead of a unit, of which the white space is that of ours; '' where nothing is known."""
     if kind == "length" and re.fullmatch(r"(ft|['′’])[ -]*[0-9].*", name):
         return "; write feet and inches in one unit, such as '90 in' for 7 ft 6 in"
+    if kind == "viscosity" and name in _KINEMATIC:
+        return (
+            f"; {name} is a unit of kinematic viscosity; times the density it is the dynamic one: "
+            "100 mm2/s · 0.88 kg/dm3 = 88 mPa s"
+        )
     if kind == "spring":
         return "; it is height over pressure: a spring of 60 lb per inch is '1/60 in/psi'"
     number = NUMBER.match(name)

@@ -29,6 +29,7 @@ from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
 from kurbel.declared.reading import REFUSED, text_in_one_line
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
+from kurbel.declared.units import MOST_SHAFT_ITEMS
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.cylinder import MOST_TURNS, Cylinder, counterweights, crowded
 from kurbel.machine.indicator import Chamber
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
         SharedCounterweights,
     )
     from kurbel.machine.known_effort import KnownEffort
+    from kurbel.machine.oil_film import OilFilms
     from kurbel.machine.pumped import Gas, Pump
     from kurbel.machine.several import EqualCylinders
     from kurbel.machine.shaft_line import ShaftLine, ShaftPart
@@ -121,10 +123,25 @@ def _pump() -> type[Pump]:
     return Pump
 
 
+def _oil_films() -> type[OilFilms]:
+    from kurbel.machine.oil_film import OilFilms
+
+    return OilFilms
+
+
 def _equal_cylinders() -> type[EqualCylinders]:
     from kurbel.machine.several import EqualCylinders
 
     return EqualCylinders
+
+
+def _throw_of_first(cylinders: tuple[Cylinder, ...]) -> Iterator[Rule]:
+    """Yield the rule that the throws count from that of cylinder 1."""
+    if not cylinders or cylinders[0].throw_angle is None:
+        return
+    message = "the throws count from that of cylinder 1; give 0 deg, or leave it out"
+    is_turned = np.not_equal(cylinders[0].throw_angle % 360.0, 0.0)
+    yield Rule(("cylinders", 0, "throw_angle"), is_turned, message)
 
 
 class LoadCase(Record):
@@ -247,7 +264,9 @@ class Machine(Record):
         _locomotive, "Driven wheels, for hammer blow and swaying couple", absent="no locomotive"
     )
     shaft: ShaftLine | None = field(
-        Listing(OneOf(Choice(("ground", "flywheel")), RecordForm(_shaft_part))),
+        Listing(
+            OneOf(Choice(("ground", "flywheel")), RecordForm(_shaft_part)), most=MOST_SHAFT_ITEMS
+        ),
         "Shaft line for torsional vibration, in order along the shaft: masses, shaft segments between them, gears, "
         "branches, `flywheel` (that of the machine) and `ground` (a fixed end)",
         absent="no torsional vibration",
@@ -282,6 +301,9 @@ class Machine(Record):
         _pump,
         "Slip, liquid, pipes and vessels of a pump; its driven pistons are then those of pumps",
         absent="no pipes",
+    )
+    oil_film: OilFilms | None = field(
+        _oil_films, "Oil between pins and shells, for the thickness of its film", absent="no film"
     )
     origin: Origin | None = None
     cases: tuple[LoadCase, ...] = field(
@@ -371,6 +393,11 @@ class Machine(Record):
                     self.crankshaft, cylinder.mechanism.rubbing_pin
                 )
                 yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
+        if self.oil_film:
+            frictions = [cylinder.friction for cylinder in self.cylinders]
+            for rule in self.oil_film.rules_beside(self.crankshaft, frictions):
+                yield rule.below("oil_film")
+        yield from _throw_of_first(self.cylinders)
         yield from crowded(self.cylinders)
         for key, diagram in (
             ("effort", self.effort),

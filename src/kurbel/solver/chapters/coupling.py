@@ -12,6 +12,7 @@ one does not vibrate with the torque: both masses turn alike, and
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -52,7 +53,7 @@ def natural_order(coupling: Coupling, own: Array, omega: Number) -> Array:
     return np.sqrt(coupling.stiffness * (1 / own + 1 / coupling.inertia)) / omega
 
 
-class CouplingTorque(Results):
+class CouplingTorque(Results, ABC):
     """Extremes of the torque in a coupling; torque: its samples in N m with their pieces."""
 
     torque: tuple[Pieces, Array]
@@ -61,19 +62,19 @@ class CouplingTorque(Results):
         "M_K,max",
         "torque",
         "Largest torque in the elastic coupling",
-        lambda one: one.torque_extremes.largest,
+        lambda coupling: coupling.torque_extremes.largest,
     )
     M_coupling_min = value(
         "M_K,min",
         "torque",
         "Smallest torque in the elastic coupling",
-        lambda one: one.torque_extremes.smallest,
+        lambda coupling: coupling.torque_extremes.smallest,
     )
     amplification = value(
         "V",
         "ratio",
         "Torque variation in the coupling, relative to that in a rigid coupling",
-        lambda one: one.amplified(),
+        lambda coupling: coupling.amplified(),
     )
 
     @cached_property
@@ -82,13 +83,13 @@ class CouplingTorque(Results):
         pieces, torque = self.torque
         return pieces.extremes(torque[None]).each(self.result)[0]
 
+    @abstractmethod
     def result(self, values: Array) -> Any:
         """Return values (n,), nan for machines without a solution; for one machine a float."""
-        raise NotImplementedError
 
+    @abstractmethod
     def amplified(self) -> Number | None:
         """Return the swing of the torque over that in a rigid coupling; None where that does not swing."""
-        raise NotImplementedError
 
 
 class StiffCoupling(CouplingTorque):
@@ -190,6 +191,7 @@ class ElasticCoupling(SpeedLine, CouplingTorque):
         """Logarithm of what is left of a small disturbance after a cycle."""
         return self.result(self._found.growth)
 
+    @abstractmethod
     def amplified(self) -> Number | None:
         """Return the swing of the torque over that of J₂ (M − L)/(J₁ + J₂) + L; None where that does not swing."""
         of, (own, driven) = self.effort.pieces.of, self._masses
