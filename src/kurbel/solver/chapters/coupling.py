@@ -191,7 +191,6 @@ class ElasticCoupling(SpeedLine, CouplingTorque):
         """Logarithm of what is left of a small disturbance after a cycle."""
         return self.result(self._found.growth)
 
-    @abstractmethod
     def amplified(self) -> Number | None:
         """Return the swing of the torque over that of J₂ (M − L)/(J₁ + J₂) + L; None where that does not swing."""
         of, (own, driven) = self.effort.pieces.of, self._masses
