@@ -82,27 +82,25 @@ class StressColumns(AtAngles):
         """The columns by id; of the stresses those of the parts that are examined."""
         body = self._body
         loaded = [state for state in self._states if state.drive.has_force]
+        nothing = np.zeros(len(self.phi))
         columns: ValuesById = {
-            "D": sum(state.D for state in loaded) + np.zeros(len(self.phi)),
-            "T": sum(state.T for state in loaded) + np.zeros(len(self.phi)),
+            "D": sum(state.D for state in loaded) + nothing,
+            "T": sum(state.T for state in loaded) + nothing,
             "A_D": body.A.real,
             "A_T": body.A.imag,
             "B_D": body.B.real,
             "B_T": body.B.imag,
         }
         if any(state.T_pin is not None for state in loaded):
-            columns["T_pin"] = sum(state.tangential_at_pin for state in loaded) + np.zeros(
-                len(self.phi)
-            )
+            columns["T_pin"] = sum(state.tangential_at_pin for state in loaded) + nothing
         if self._torques:
-            columns["M_A"] = np.zeros(len(self.phi)) if body.torque_A is None else body.torque_A
+            columns["M_A"] = nothing if body.torque_A is None else body.torque_A
             columns["M_B"] = body.torque_B
         for place in self._places:
-            for id, stress in (
-                (f"sigma_{place.part}", place.combined),
-                (f"mises_{place.part}", place.von_mises),
-            ):
-                columns[id] = np.maximum(columns.get(id, 0.0), stress)
+            # of a part the largest stress of its places
+            bach, mises = f"sigma_{place.part}", f"mises_{place.part}"
+            columns[bach] = np.maximum(columns.get(bach, 0.0), place.combined)
+            columns[mises] = np.maximum(columns.get(mises, 0.0), place.von_mises)
         return columns
 
 
@@ -236,14 +234,15 @@ class ThrowStrength(Strength):
         self.name = f"throw {number + 1}"
         self.rods = [cylinders[index] for index in self.throw.cylinders]
         # torque is carried from the free end, of overhung cranks from none
-        before = () if self.shaft.overhung else line.throws[:number]
-        self.before = [cylinders[index] for throw in before for index in throw.cylinders]
+        self.before = list[CylinderForces]()
+        if not self.shaft.overhung:
+            for throw in line.throws[:number]:
+                self.before += [cylinders[index] for index in throw.cylinders]
         self.opposite = None
+        self._beyond = list[CylinderForces]()
         if self.shaft.overhung and self.throw.flywheel and len(line.throws) > 1:
             self.opposite = line.throws[1 - number]
-        self._beyond = (
-            [cylinders[index] for index in self.opposite.cylinders] if self.opposite else []
-        )
+            self._beyond = [cylinders[index] for index in self.opposite.cylinders]
         self._is_alone = len(cylinders) == 1
 
     def _position(self, forces: CylinderForces) -> Number:
@@ -254,10 +253,9 @@ class ThrowStrength(Strength):
 
     def _machine_at(self, pieces: Pieces | None) -> Machine:
         """Return the machine, or of many the one of each piece."""
-        several = pieces is not None and self.count is not None
-        return (
-            taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
-        )
+        if pieces is None or self.count is None:
+            return self.machine
+        return taken(self.machine, pieces.machine)
 
     def _bodies(
         self, load: Load, angle: CrankAngle, pieces: Pieces | None = None, number: int = 0
@@ -289,6 +287,7 @@ class ThrowStrength(Strength):
         return CrankAngle.of(degrees - (later if pieces is None else pieces.of(later)))
 
     def _places(self, body: FreeBody, opposite: Opposite | None) -> list[Place]:
+        """Return the places that are examined, with their stresses."""
         return list(places(body, self.throw.flywheel, opposite))
 
     def _columns(self, phi: Array, within: Array) -> StressColumns:
@@ -313,11 +312,10 @@ class ThrowStrength(Strength):
         ), states
 
     def _state(self, forces: CylinderForces, degrees: Array, within: Array) -> State:
-        return (
-            State.at(forces.drive, degrees, within)
-            if self._is_alone
-            else state_at(forces, degrees, within)
-        )
+        """Return the state of a cylinder at angles of crank 1."""
+        if self._is_alone:
+            return State.at(forces.drive, degrees, within)
+        return state_at(forces, degrees, within)
 
     # the cycle
 
@@ -341,30 +339,33 @@ class ThrowStrength(Strength):
     def _samples(self) -> Array:
         """What acts on the throw at the nodes of the common pieces, real (parts, nodes, pieces); see `_load`."""
         pieces = self._common
-        rods = [self._pin_samples(forces) for forces in self.rods]
-        parts = [part for rod in rods for part in (rod.real, rod.imag)]
-        parts += [
-            pieces.filled(pieces.of(forces.drive.rod_centrifugal_force)) for forces in self.rods
-        ]
-        beyond = [self._pin_samples(forces) for forces in self._beyond]
-        parts += [part for rod in beyond for part in (rod.real, rod.imag)]
+        parts = list[Array]()
+        for forces in self.rods:
+            load = self._pin_samples(forces)
+            parts += [load.real, load.imag]
+        for forces in self.rods:
+            parts.append(pieces.filled(pieces.of(forces.drive.rod_centrifugal_force)))
+        for forces in self._beyond:
+            load = self._pin_samples(forces)
+            parts += [load.real, load.imag]
         if self.before:
             torque = pieces.filled(0.0)
             for forces in self.before:
-                torque = torque + self._pin_samples(forces).imag * pieces.of(
-                    forces.drive.mechanism.crank
-                )
+                crank = pieces.of(forces.drive.mechanism.crank)
+                torque = torque + self._pin_samples(forces).imag * crank
             parts.append(torque)
         return np.stack(parts)
 
     def _load(self, parts: Array) -> Load:
         """Return the load that these parts are, (parts, nodes, pieces)."""
         rods, beyond = len(self.rods), len(self._beyond)
-        forces = parts[: 2 * rods : 2] + 1j * parts[1 : 2 * rods : 2]
-        others = parts[3 * rods : 3 * rods + 2 * beyond]
-        torque_A = parts[-1] if self.before else None
+        of_rods, pulls = parts[: 2 * rods], parts[2 * rods : 3 * rods]
+        of_others = parts[3 * rods : 3 * rods + 2 * beyond]
         return Load(
-            [*forces], torque_A, [*parts[2 * rods : 3 * rods]], [*(others[::2] + 1j * others[1::2])]
+            list(of_rods[::2] + 1j * of_rods[1::2]),
+            parts[-1] if self.before else None,
+            list(pulls),
+            list(of_others[::2] + 1j * of_others[1::2]),
         )
 
     def _bodies_on(self, pieces: Pieces, parts: Array) -> tuple[FreeBody, Opposite | None]:
@@ -381,43 +382,41 @@ class ThrowStrength(Strength):
         pieces, parts = self._common, self._samples
         body, opposite = self._bodies_on(pieces, parts)
         examined = self._places(body, opposite)
-        if self.count is None and not all(
-            np.isfinite(place.combined + place.von_mises).all() for place in examined
-        ):
+        are_finite = [np.isfinite(place.combined + place.von_mises).all() for place in examined]
+        if self.count is None and not all(are_finite):
             raise UsageError(
                 f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
                 "check the numbers and units of the machine file"
             )
         kinks = np.stack([pieces.filled(kink) for kink in self._kinks(body, self._load(parts))])
 
-        def magnitudes(some: Pieces, found: Array) -> Array:
-            body, _ = self._bodies_on(some, found)
-            load = self._load(found)
-            of_rods = [force + pull for force, pull in zip(load.rods, load.pulls)]
-            return np.abs(np.stack((body.A, body.B, *load.rods, *of_rods)))
+        def magnitudes(cut: Pieces, acting: Array) -> Array:
+            body, _ = self._bodies_on(cut, acting)
+            load = self._load(acting)
+            without_pull = [force + pull for force, pull in zip(load.rods, load.pulls)]
+            return np.abs(np.stack((body.A, body.B, *load.rods, *without_pull)))
 
-        fine, loads, found = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
-        return fine, found, np.asarray(loads)
+        fine, loads, acting = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
+        return fine, acting, np.asarray(loads)
 
     def _kinks(self, body: FreeBody, load: Load) -> list[Number]:
         """Return the quantities at whose zeros a magnitude or a stress bends."""
-        bends = body.moments_at(body.shaft.web_distance)
-        vectors = (
-            [*load.rods, body.pin, body.A, bends]
-            if len(load.rods) > 1
-            else [body.pin, body.A, bends]
-        )
-        kinks = [part for vector in vectors for part in (vector.real, vector.imag)]
+        vectors = [body.pin, body.A, body.moments_at(body.shaft.web_distance)]
+        if len(load.rods) > 1:
+            vectors = [*load.rods, *vectors]
+        kinks = list[Number]()
+        for vector in vectors:
+            kinks += [vector.real, vector.imag]
         # a web is bent out of plane as much at the pin as at the shaft
         kinks += [body.along_web, body.torque_pin - body.torque_B, body.torque_pin + body.torque_B]
         if body.torque_A is not None:
-            kinks += [
-                body.torque_A,
-                body.torque_A - body.torque_pin,
-                body.torque_A + body.torque_pin,
-                body.torque_B,
-            ]
-        return [*kinks, *(force.real + pull for force, pull in zip(load.rods, load.pulls))]
+            kinks.append(body.torque_A)
+            kinks.append(body.torque_A - body.torque_pin)
+            kinks.append(body.torque_A + body.torque_pin)
+            kinks.append(body.torque_B)
+        for force, pull in zip(load.rods, load.pulls):
+            kinks.append(force.real + pull)
+        return kinks
 
     @property
     def breaks(self) -> Array:
@@ -428,16 +427,16 @@ class ThrowStrength(Strength):
     def _largest(self) -> list[Extreme]:
         """The largest of Bach's stresses over the cycle, then of von Mises', of every place."""
 
-        def stresses(some: Pieces, parts: Array) -> list[Array]:
-            examined = self._places(*self._bodies_on(some, parts))
-            return [
-                *(place.combined for place in examined),
-                *(place.von_mises for place in examined),
-            ]
+        def stresses(cut: Pieces, parts: Array) -> list[Array]:
+            examined = self._places(*self._bodies_on(cut, parts))
+            by_bach = [place.combined for place in examined]
+            return by_bach + [place.von_mises for place in examined]
 
-        return [
-            Extreme(*map(self._result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))
-        ]
+        pieces, parts, _ = self._cycle
+        largest_stresses = list[Extreme]()
+        for stress, degrees in zip(*highest(pieces, parts, stresses)):
+            largest_stresses.append(Extreme(self._result(stress), self._result(degrees)))
+        return largest_stresses
 
     def _result(self, values: Array) -> Any:
         return result(values, self.count)
@@ -445,27 +444,37 @@ class ThrowStrength(Strength):
     @cached_property
     def answers(self) -> ValuesById:
         """The key values by id; stresses of the parts that are examined, the safety where k_b is given."""
-        allowable = self.shaft.allowable_bending
         values = self._of_loads()
         pull = sum(forces.drive.rod_centrifugal_force for forces in self.rods)
         values["C_rod"] = pull if some(pull != 0) else None
         values["P_dc"] = self.full_force
         length = self.shaft.pin_length / len(self.rods)
-        values["p_pin_dc"] = (
-            abs(self.full_force.value) / self.shaft.pin_diameter / length
-        )  # G: P_max/(d_z l_z)
-        at = self.at_dead_centre
-        rows = [*zip(at, self._largest[: len(at)], self._largest[len(at) :])]
-        for part in dict.fromkeys(place.part for place in at):
-            of_part = [row for row in rows if row[0].part == part]
-            resting = largest(*(Extreme(place.combined, place.degrees) for place, _, _ in of_part))
-            turning = largest(*(bach for _, bach, _ in of_part))
-            values[f"sigma_{part}_dc"], values[f"sigma_{part}_max"] = resting.value, turning
-            values[f"mises_{part}_max"] = largest(*(mises for _, _, mises in of_part))
-            worst = largest(resting, turning)
-            if allowable is not None and not every(worst.value == 0):
-                safety = allowable / where(worst.value == 0, math.nan, worst.value)
-                values[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
+        pressure = abs(self.full_force.value) / self.shaft.pin_diameter / length
+        values["p_pin_dc"] = pressure  # G: P_max/(d_z l_z)
+        for part in dict.fromkeys(place.part for place in self.at_dead_centre):
+            values |= self._of_part(part)
+        return values
+
+    def _of_part(self, part: str) -> ValuesById:
+        """The key values of one part of the throw: its stresses at rest and running, and its safety."""
+        count = len(self.at_dead_centre)
+        resting, by_bach, by_mises = list[Extreme](), list[Extreme](), list[Extreme]()
+        for number, place in enumerate(self.at_dead_centre):
+            if place.part == part:
+                resting.append(Extreme(place.combined, place.degrees))
+                by_bach.append(self._largest[number])
+                by_mises.append(self._largest[count + number])
+        at_rest, running = largest(*resting), largest(*by_bach)
+        values: ValuesById = {
+            f"sigma_{part}_dc": at_rest.value,
+            f"sigma_{part}_max": running,
+            f"mises_{part}_max": largest(*by_mises),
+        }
+        worst = largest(at_rest, running)
+        allowable = self.shaft.allowable_bending
+        if allowable is not None and not every(worst.value == 0):
+            safety = allowable / where(worst.value == 0, math.nan, worst.value)
+            values[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
         return values
 
     def _of_loads(self) -> ValuesById:
@@ -474,35 +483,40 @@ class ThrowStrength(Strength):
         The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n. Each rod has
         an equal part of the pin. Bearings between two throws carry both: their pressure is that of `kurbel bearings`.
         """
-        (pieces, _, loads), shaft, speed = self._cycle, self.shaft, self.machine.speed
+        pieces, _, loads = self._cycle
+        shaft = self.shaft
         rods = len(self.rods)
         extremes = pieces.extremes(loads[: 2 + rods])
-        most = [
-            Extreme(*map(self._result, pair)) for pair in zip(extremes.largest, extremes.largest_at)
-        ]
+        most = list[Extreme]()
+        for load, degrees in zip(extremes.largest, extremes.largest_at):
+            most.append(Extreme(self._result(load), self._result(degrees)))
         means = [self._result(mean) for mean in pieces.mean(loads)]
         mean_on_pin = functools.reduce(np.maximum, means[2 + rods :]) if rods > 1 else means[-1]
         values: ValuesById = {"A_max": most[0], "B_max": most[1]}
 
         pin_length = shaft.pin_length / rods
-        parts: dict[str, tuple[Extreme, Any, Number | None, Number | None]] = {
-            "pin": (largest(*most[2:]), mean_on_pin, shaft.pin_diameter, pin_length)
-        }
+        values |= self._pressures(
+            "pin", largest(*most[2:]), mean_on_pin, shaft.pin_diameter, pin_length
+        )
         if len(self.line.throws) == 1:
-            journal = shaft.journal_diameter, shaft.journal_length
-            parts |= {
-                "journal_A": (most[0], means[0], *journal),
-                "journal_B": (most[1], means[1], *journal),
-            }
-        for part, (load, mean, diameter, length) in parts.items():
+            diameter, length = shaft.journal_diameter, shaft.journal_length
             if diameter is not None and length is not None:
-                pressure_max: Any = load.value / diameter / length
-                values[f"p_{part}_max"] = Extreme(pressure_max, load.degrees)
-                values[f"p_{part}_mean"] = pressure = mean / diameter / length
-                values[f"k_{part}"] = (
-                    None if speed is None else pressure * math.pi * diameter * speed
-                )
+                values |= self._pressures("journal_A", most[0], means[0], diameter, length)
+                values |= self._pressures("journal_B", most[1], means[1], diameter, length)
         return values
+
+    def _pressures(
+        self, part: str, load: Extreme, mean: Any, diameter: Number, length: Number
+    ) -> ValuesById:
+        """The largest and the mean pressure on a pin or journal, and p_m v where a speed is given."""
+        speed = self.machine.speed
+        largest_pressure: Any = load.value / diameter / length
+        pressure = mean / diameter / length
+        return {
+            f"p_{part}_max": Extreme(largest_pressure, load.degrees),
+            f"p_{part}_mean": pressure,
+            f"k_{part}": None if speed is None else pressure * math.pi * diameter * speed,
+        }
 
     def unbalanced(self) -> Number:
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
@@ -513,10 +527,9 @@ class ThrowStrength(Strength):
             if forces.drive.has_force:
                 state = forces.samples
                 of_work = state.tangential_at_pin * state.mechanism.crank + 0j
-                torque = (
-                    torque
-                    + (of_work if self._is_alone else resampled(pieces, forces, of_work)[0]).real
-                )
+                if not self._is_alone:
+                    of_work = resampled(pieces, forces, of_work)[0]
+                torque = torque + of_work.real
         return self._result(pieces.largest(body.equilibrium_residual(torque)))
 
     @cached_property
@@ -584,7 +597,7 @@ class ThrowStrength(Strength):
             bodies = self._bodies(Load(loads, None, opposite=beyond), angle, number=number)
             of_crank_1 = self._of_crank_1(forces, degrees)
             examined = [place._replace(degrees=of_crank_1) for place in self._places(*bodies)]
-            worst = [_worse(*pair) for pair in zip(worst, examined)] if worst else examined
+            worst = list(map(_worse, worst, examined)) if worst else examined
         return tuple(worst)
 
     @property
@@ -600,10 +613,11 @@ class ThrowStrength(Strength):
         """Every place at the crank angle of the running machine at which its own combined stress is largest."""
         angles = [worst.degrees for worst in self._largest[: len(self.at_dead_centre)]]
         worst = list[Place]()
-        for number, (place, degrees) in enumerate(
-            zip(self._places(*self._next_to(angles)), angles)
-        ):
-            side = 2 * number + int(place.combined[2 * number : 2 * number + 2].argmax())
+        examined = self._places(*self._next_to(angles))
+        for number, (place, degrees) in enumerate(zip(examined, angles)):
+            # the side of the angle, before or after it, with the larger stress
+            first = 2 * number
+            side = first + int(place.combined[first : first + 2].argmax())
             worst.append(place.of_state(side, degrees))
         return tuple(worst)
 

@@ -73,14 +73,14 @@ class Place(NamedTuple):
     def combined(self) -> Any:
         """Combined stress 0.35 σ + 0.65 √(σ² + 4 (α₀ τ)²) in Pa after Bach (G, "Resultierende Beanspruchung")."""
         torsion = 0.0 if self.torsion is None else self.torsion
-        return 0.35 * magnitude(self.normal) + 0.65 * np.hypot(
-            self.normal, 2 * self.alpha * torsion
-        )
+        resulting = np.hypot(self.normal, 2 * self.alpha * torsion)
+        return 0.35 * magnitude(self.normal) + 0.65 * resulting
 
     @property
     def von_mises(self) -> Any:
         """Equivalent stress √(σ² + 3 τ²) in Pa after von Mises."""
-        return np.hypot(self.normal, 0.0 if self.torsion is None else math.sqrt(3) * self.torsion)
+        torsion = 0.0 if self.torsion is None else self.torsion
+        return np.hypot(self.normal, math.sqrt(3) * torsion)
 
     def of_state(self, number: int, degrees: float) -> Place:
         """Return the place in one of several states, whose forces act at a crank angle."""
@@ -107,23 +107,10 @@ def places(
     that of the allowable stresses for the webs.
     """
     shaft = body.shaft
-    inner, outer = (
-        shaft.web_distance + side * shaft.web_thickness / 2 for side in (-1, 1)
-    )  # faces of a web
-    # in the middle of the pin M_b = a √(A_T² + A_D²) and M_d = A_T r (G)
-    several = len(body.rods) > 1
-    under_rods = (
-        {f"rod {number}": u for number, (_, u) in enumerate(body.rods, 1)}
-        if several
-        else {"middle": 0.0}
-    )
-    if not shaft.overhung:
-        sections = {**under_rods, "at web A": -inner, "at web B": inner}
-    elif several:
-        sections = {**under_rods, "at web A": inner}
-    else:
-        sections = {"at web A": inner}
-    for name, u in sections.items():
+    # faces of a web, from the middle of the pin
+    inner = shaft.web_distance - shaft.web_thickness / 2
+    outer = shaft.web_distance + shaft.web_thickness / 2
+    for name, u in _sections_of_pin(body, inner).items():
         yield _round("pin", name, body.moments_at(u), body.torque_pin, shaft.pin_diameter)
 
     at_pin, at_B = magnitude(body.torque_pin), magnitude(body.torque_B)
@@ -132,11 +119,28 @@ def places(
         moments = body.moments_at(-shaft.web_distance)
         yield from _web("web_A", shaft, body.before_pin.real, moments, _larger(at_pin, at_A))
     last_web = "web_A" if shaft.overhung else "web_B"
-    yield from _web(
-        last_web, shaft, body.along_web, body.moments_at(shaft.web_distance), _larger(at_pin, at_B)
-    )
+    moments = body.moments_at(shaft.web_distance)
+    yield from _web(last_web, shaft, body.along_web, moments, _larger(at_pin, at_B))
     if shaft.journal_diameter is not None:
         yield from _journals(body, shaft.journal_diameter, outer, is_last, opposite)
+
+
+def _sections_of_pin(body: FreeBody, inner: Number) -> dict[str, Number]:
+    """Return the sections of the pin with their distances from its middle; inner: that of the faces of the webs."""
+    overhung = body.shaft.overhung
+    sections: dict[str, Number] = {}
+    if len(body.rods) > 1:
+        for number, (_, u) in enumerate(body.rods, 1):
+            sections[f"rod {number}"] = u
+    elif not overhung:
+        # in the middle of the pin M_b = a √(A_T² + A_D²) and M_d = A_T r (G)
+        sections["middle"] = 0.0
+    if overhung:
+        sections["at web A"] = inner
+    else:
+        sections["at web A"] = -inner
+        sections["at web B"] = inner
+    return sections
 
 
 def _journals(
@@ -155,16 +159,14 @@ def _journals(
     if opposite is not None:
         # at the flywheel between the bearings, or at bearing B, by what acts on either side
         before_B = where(f < 0, f, 0.0)
-        bending = (
-            body.moments_at(shaft.b + before_B)
-            + opposite.body.moments_at(shaft.a - before_B) * opposite.turn
-        )
+        by_opposite = opposite.body.moments_at(shaft.a - before_B) * opposite.turn
+        bending = body.moments_at(shaft.b + before_B) + by_opposite
         torsion = _larger(magnitude(body.torque_B), magnitude(opposite.body.torque_B))
         yield _round("journal_B", "at flywheel", bending, torsion, diameter)
         return
-    beyond = f >= 0  # of bearing B, in whose middle the bending is G f
-    bending = np.where(beyond, body.weight * f, body.moments_at(shaft.b + f))
-    name = "in bearing" if every(beyond) else "at flywheel"
+    is_beyond = f >= 0  # of bearing B, in whose middle the bending is G f
+    bending = np.where(is_beyond, body.weight * f, body.moments_at(shaft.b + f))
+    name = "in bearing" if every(is_beyond) else "at flywheel"
     yield _round("journal_B", name, bending, body.torque_B, diameter)
 
 
@@ -177,19 +179,12 @@ def _round(part: str, name: str, moments: Force, torque: Number | None, diameter
 
     Bending σ = 32 M/(π d³), torsion τ = 16 M/(π d³).
     """
-    bendings = (
-        magnitude(32 / math.pi * one / diameter / diameter / diameter)
-        for one in (moments.real, moments.imag)
-    )
-    in_plane, out_of_plane = bendings
-    torsion = (
-        None
-        if torque is None
-        else magnitude(16 / math.pi * torque / diameter / diameter / diameter)
-    )
-    return Place(
-        part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane)
-    )
+    d = diameter
+    in_plane = magnitude(32 / math.pi * moments.real / d / d / d)
+    out_of_plane = magnitude(32 / math.pi * moments.imag / d / d / d)
+    torsion = None if torque is None else magnitude(16 / math.pi * torque / d / d / d)
+    normal = np.hypot(in_plane, out_of_plane)
+    return Place(part, name, 1.0, None, in_plane, out_of_plane, torsion, normal)
 
 
 def _web(
@@ -203,28 +198,16 @@ def _web(
     Its torsion is τ = (9/2) M_d/(t² w) in the middle of the wide faces and (9/2) M_d/(t w²) in that of the narrow ones
     (G, webs, "auf Drehung"): Bach's rounded factor; de Saint-Venant's own is 4.81 for a square and 3 for a strip.
     """
-    t, w, allowed, twisting = (
-        shaft.web_thickness,
-        shaft.web_width,
-        shaft.allowable_bending,
-        shaft.allowable_torsion,
-    )
-    alpha = 1.0 if allowed is None or twisting is None else allowed / (1.3 * twisting)
-    direct, twist = force / t / w, 4.5 * magnitude(moments.imag)
-    wide, narrow = magnitude(6 * moments.real / w / t / t), 6 * out_of_plane / t / w / w
-    yield Place(
-        part, "wide face", alpha, direct, wide, None, twist / t / t / w, magnitude(direct) + wide
-    )
-    yield Place(
-        part,
-        "narrow face",
-        alpha,
-        direct,
-        None,
-        narrow,
-        twist / w / w / t,
-        magnitude(direct) + narrow,
-    )
-    yield Place(
-        part, "corner", alpha, direct, wide, narrow, None, magnitude(direct) + wide + narrow
-    )
+    t, w = shaft.web_thickness, shaft.web_width
+    k_b, k_d = shaft.allowable_bending, shaft.allowable_torsion
+    alpha = 1.0 if k_b is None or k_d is None else k_b / (1.3 * k_d)
+
+    direct = force / t / w
+    size = magnitude(direct)
+    wide = magnitude(6 * moments.real / w / t / t)
+    narrow = 6 * out_of_plane / t / w / w
+    twist = 4.5 * magnitude(moments.imag)
+    at_wide, at_narrow = twist / t / t / w, twist / w / w / t
+    yield Place(part, "wide face", alpha, direct, wide, None, at_wide, size + wide)
+    yield Place(part, "narrow face", alpha, direct, None, narrow, at_narrow, size + narrow)
+    yield Place(part, "corner", alpha, direct, wide, narrow, None, size + wide + narrow)
