@@ -7,6 +7,7 @@ or `COLUMNS`, which go from chapter to chapter and open no more of them than the
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, cached_property
 
+from kurbel.mechanisms import KeyOffer, Offer
 from kurbel.mechanisms.kinds import KINDS
 from kurbel.quantity import (
     Lists,
@@ -28,21 +29,20 @@ def every_quantity() -> Lists:
 
     Raises TypeError for an id that has two meanings.
     """
-    mechanisms = [door() for door in KINDS.values()]
-    offers = tuple(dict.fromkeys(offer for mechanism in mechanisms for offer in mechanism.OFFERS))
-    key_offers = tuple(
-        dict.fromkeys(offer for mechanism in mechanisms for offer in mechanism.KEY_OFFERS)
-    )
+    offers, key_offers = dict[Offer, None](), dict[KeyOffer, None]()
+    for door in KINDS.values():
+        mechanism = door()
+        offers |= dict.fromkeys(mechanism.OFFERS)
+        key_offers |= dict.fromkeys(mechanism.KEY_OFFERS)
     columns: list[Quantity] = []
     key_values: list[Quantity] = []
     meanings_of_columns: Meanings = {}
     meanings_of_key_values: Meanings = {}
     for chapter in CHAPTERS:
-        rows = (
-            result_rows(chapter.kind, offers, key_offers)
-            if chapter.kind is CylinderForces
-            else result_rows(chapter.kind)
-        )
+        if chapter.kind is CylinderForces:
+            rows = result_rows(chapter.kind, tuple(offers), tuple(key_offers))
+        else:
+            rows = result_rows(chapter.kind)
         lists, owner = rows.lists, chapter.kind.__name__
         refuse_other_meanings(meanings_of_columns, lists.all_columns, owner, with_sentence=False)
         refuse_other_meanings(meanings_of_key_values, lists.all_key_values, owner)
