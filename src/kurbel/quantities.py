@@ -9,7 +9,15 @@ from functools import cache, cached_property
 
 from kurbel.mechanisms import KeyOffer, Offer
 from kurbel.mechanisms.kinds import KINDS
-from kurbel.quantity import Lists, Quantity, by_id, called, rejoined_names
+from kurbel.quantity import (
+    Lists,
+    Meanings,
+    Quantity,
+    by_id,
+    called,
+    refuse_other_meanings,
+    rejoined_names,
+)
 from kurbel.solver.case import CHAPTERS, Chapter
 from kurbel.solver.figures import doors_of, result_rows
 from kurbel.solver.forces import CylinderForces
@@ -17,7 +25,10 @@ from kurbel.solver.forces import CylinderForces
 
 @cache
 def every_quantity() -> Lists:
-    """Return all quantities that any machine may have; one that several classes declare is listed for each."""
+    """Return all quantities that any machine may have; one that several classes declare is listed for each.
+
+    Raises TypeError for an id that has two meanings.
+    """
     offers, key_offers = dict[Offer, None](), dict[KeyOffer, None]()
     for door in KINDS.values():
         mechanism = door()
@@ -25,13 +36,18 @@ def every_quantity() -> Lists:
         key_offers |= dict.fromkeys(mechanism.KEY_OFFERS)
     columns: list[Quantity] = []
     key_values: list[Quantity] = []
+    meanings_of_columns: Meanings = {}
+    meanings_of_key_values: Meanings = {}
     for chapter in CHAPTERS:
         if chapter.kind is CylinderForces:
             rows = result_rows(chapter.kind, tuple(offers), tuple(key_offers))
         else:
             rows = result_rows(chapter.kind)
-        columns += rows.lists.all_columns
-        key_values += rows.lists.all_key_values
+        lists, owner = rows.lists, chapter.kind.__name__
+        refuse_other_meanings(meanings_of_columns, lists.all_columns, owner, with_sentence=False)
+        refuse_other_meanings(meanings_of_key_values, lists.all_key_values, owner)
+        columns += lists.all_columns
+        key_values += lists.all_key_values
     return Lists(tuple(columns), tuple(key_values))
 
 

@@ -38,6 +38,14 @@ ITS_OWN = ("those of its class",)
 """Commands of a quantity that does not say which."""
 
 
+_OF_RAM = (
+    ("piston force", "force along the stroke line"),
+    ("piston speed", "ram speed"),
+    (" (yoke frame: on the piston rod)", ""),
+)
+"""Words of sentences, and what they are of a machine that drives a ram and has no piston."""
+
+
 class Quantity(NamedTuple):
     """One printed quantity; the order in which quantities are declared is that in which they are printed.
 
@@ -120,14 +128,15 @@ class Quantity(NamedTuple):
 
     def of_ram(self) -> Quantity:
         """Return the quantity of a machine that drives a ram and has no piston."""
-        text = self.text.replace("piston force", "force along the stroke line").replace(
-            "piston speed", "ram speed"
-        )
+        text = self.text
+        for of_piston, of_ram in _OF_RAM:
+            text = text.replace(of_piston, of_ram)
         return self._replace(text=text)
 
     def without_guide(self) -> Quantity:
         """Return the quantity of a machine without a crosshead guide, whose piston rod takes the side force."""
-        return self._replace(text=self.text.replace("guide force", "side force on the piston rod"))
+        text = self.text.replace("guide force", "side force on the piston rod")
+        return self._replace(text=text.replace("Force on the guide,", "Force on the piston rod,"))
 
     def printed_by(self, command: str, heading: str = "") -> Quantity:
         """Return it as a key value of this command and its own `commands`, below this heading unless it has one."""
@@ -166,6 +175,35 @@ def first_words(sentence: str) -> str:
 def by_id(*quantities: Quantity) -> dict[str, Quantity]:
     """Return the quantities by their ids."""
     return {quantity.id: quantity for quantity in quantities}
+
+
+Meanings = dict[str, tuple[Quantity, str]]
+"""Id -> the quantity that was declared first with it, and the class that has it."""
+
+
+def refuse_other_meanings(
+    meanings: Meanings, quantities: Iterable[Quantity], owner: str, with_sentence: bool = True
+) -> None:
+    """Add the quantities of a class to the meanings of their ids; raises TypeError where an id has another one.
+
+    with_sentence: two classes with one id also have the same sentence; columns may have one for each command.
+
+    >>> force = Quantity("N_max", "N_max", "force", "Largest guide force")
+    >>> refuse_other_meanings({"N_max": (force, "CylinderForces")}, [force._replace(kind="power")], "Pump")
+    Traceback (most recent call last):
+    TypeError: 'N_max' of Pump has the kind 'power', but 'force' in CylinderForces: give it another id
+    """
+    for quantity in quantities:
+        first, where = meanings.setdefault(quantity.id, (quantity, owner))
+        pairs = [("kind", quantity.kind, first.kind), ("symbol", quantity.symbol, first.symbol)]
+        if with_sentence:
+            pairs.append(("sentence", quantity.text, first.text))
+        for what, text, text_of_first in pairs:
+            if text != text_of_first:
+                raise TypeError(
+                    f"'{quantity.id}' of {owner} has the {what} '{text}', but '{text_of_first}' in {where}: "
+                    "give it another id"
+                )
 
 
 def called(name: str, quantities: Iterable[Quantity]) -> tuple[str, ...]:

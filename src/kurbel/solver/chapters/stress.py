@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -104,7 +105,7 @@ class StressColumns(AtAngles):
         return columns
 
 
-class Strength(Results):
+class Strength(Results, ABC):
     """Statics and stresses of a throw, or of all throws of a machine; of many machines values are (machines,)."""
 
     command = "stress"
@@ -193,13 +194,13 @@ class Strength(Results):
     count: int | None
 
     @property
+    @abstractmethod
     def answers(self) -> ValuesById:
         """The key values by id."""
-        raise NotImplementedError
 
+    @abstractmethod
     def unbalanced(self) -> Number:
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
-        raise NotImplementedError
 
 
 class Load(NamedTuple):
