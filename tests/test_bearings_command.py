@@ -23,8 +23,11 @@ def test_json_has_one_part_for_each_pin_and_bearing() -> None:
     parts = {part["name"]: part for part in result["bearings"]}
     assert list(parts) == ["crank pin", "crosshead pin", "bearing A", "bearing B"]
     columns = {column["id"]: column for column in parts["crank pin"]["columns"]}
-    assert list(columns) == ["phi", "load", "load_throw", "load_engine", "load_rod"]
-    assert [columns[id]["unit"] for id in columns] == ["deg", "N", "deg", "deg", "deg"]
+    loads = ["phi", "load", "load_throw", "load_engine", "load_rod"]
+    film = ["eccentricity", "film_thickness", "film_direction", "film_pressure"]
+    assert list(columns) == [*loads, *film]
+    assert [columns[id]["unit"] for id in loads] == ["deg", "N", "deg", "deg", "deg"]
+    assert [columns[id]["unit"] for id in film] == ["", "m", "deg", "Pa"]
     assert (
         columns["load_throw"]["values"][0] == 180
     )  # in the dead centre the piston presses the pin toward the shaft
@@ -33,6 +36,7 @@ def test_json_has_one_part_for_each_pin_and_bearing() -> None:
         "load",
         "load_throw",
         "load_engine",
+        *film,
     ]
     values = {value["id"]: value for value in parts["bearing A"]["key_values"]}
     asked = {

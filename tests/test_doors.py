@@ -17,6 +17,7 @@ import kurbel
 from kurbel.declared.forms.structures import RecordForm, Variant
 from kurbel.declared.forms.values import Form
 from kurbel.machine_file.reader import ROOT
+from kurbel.mechanisms.kinds import KINDS
 from kurbel.quantities import CHAPTERS, KEY_VALUES
 from kurbel.report.commands import COMMANDS, REPORTS
 from kurbel.solver.drive import any_of
@@ -70,6 +71,15 @@ CHECKED = {
     "report.delivery": {"pump", "compressor", "gas"},
 }
 """Module that a check imports to say what it has to say -> the keys of which a file has one, none for every check."""
+
+
+_MECHANISMS = (
+    "mechanisms.four_bar",
+    "mechanisms.parallel_crank",
+    "mechanisms.scotch_yoke",
+    "mechanisms.slotted_lever",
+)
+"""Those of other machines than engines with a connecting rod."""
 
 
 # what imports what
@@ -315,17 +325,35 @@ def test_a_sweep_of_forces_loads_no_chapter(loaded: Server) -> None:
     assert not [
         name
         for name in modules
-        if name.startswith(("solver.chapters", "traces", "notes", "solver.flywheel"))
+        if name.startswith(("solver.chapters", "traces", "notes", "pictures", "solver.flywheel"))
     ]
 
 
 @pytest.mark.parametrize(
-    "words", [("flywheel", "--where", "T = 0"), ("forces", "--columns", "T,N")]
+    "words",
+    [
+        ("flywheel", "--where", "T = 0"),
+        ("forces", "--columns", "T,N"),
+        ("motion", "--key-values", "c_max"),
+        ("flywheel", "--key-values", "dE machine.T_max"),
+    ],
 )
-def test_a_named_column_opens_no_other_chapter(loaded: Server, words: tuple[str, ...]) -> None:
+def test_a_name_opens_no_other_chapter(loaded: Server, words: tuple[str, ...]) -> None:
     command, *options = words
     modules = loaded(command, str(CONFIGS["waterworks"]), *options, "-f", "csv")
     assert not [name for name in modules if name.startswith(("solver.chapters.", "traces"))]
+
+
+def test_a_picture_loads_no_page_and_no_chapter(loaded: Server) -> None:
+    modules = loaded("plot", str(CONFIGS["waterworks"]))
+    others = ("page", "checks", "notes", "report.keys", "solver.chapters", "traces", *_MECHANISMS)
+    assert not [name for name in modules if name.startswith(others)]
+
+
+def test_a_page_loads_no_mechanism_no_trace_and_no_gear_of_others(loaded: Server) -> None:
+    modules = loaded("report", str(CONFIGS["waterworks"]))
+    others = ("traces", "machine.valve", "solver.valve", "solver.chapters.coupling", *_MECHANISMS)
+    assert not [name for name in modules if name.startswith(others)]
 
 
 def test_help_loads_neither_solver_nor_machine(loaded: Server) -> None:
@@ -343,6 +371,18 @@ def test_at_their_heads_core_modules_import_no_chapter() -> None:
         for name in with_heads(CORE_MODULES)
         if name.startswith(("solver.chapters", "traces", "pictures"))
     } == set()
+
+
+def test_none_but_kinds_and_references_name_the_class_of_a_mechanism() -> None:
+    files = {door: _of_door(door) - {"mechanisms"} for door in KINDS.values()}
+    mechanisms = set[str]().union(*files.values())
+    naming = {
+        module
+        for module in _everything()
+        for head in [at_head(module)]
+        if head & mechanisms and not module.startswith(("mechanisms", "accuracy"))
+    }
+    assert naming == set()
 
 
 def test_the_word_of_a_chapter_is_that_of_its_class() -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from command import run
 from kurbel.declared.unit_systems import SI, SYSTEMS, shown_unit
-from kurbel.declared.units import parse_quantity
+from kurbel.declared.units import KINDS, ZEROED_UNITS, Kind, parse_quantity, unit_factor, unit_names
 from kurbel.errors import UnitError
 from representative import CONFIGS, case_of, law_of_each
 
@@ -32,6 +32,24 @@ def test_values_by_definition_and_what_is_said_of_other_texts(
         assert parse_quantity(text, kind) == (
             pytest.approx(wanted, rel=1e-15, abs=0) if mark == "≈" else wanted
         )
+
+
+@law_of_each(kind for kind in SI if kind != "ratio")
+def test_every_unit_has_a_factor(kind: str) -> None:
+    for unit in unit_names(kind):
+        if unit not in ZEROED_UNITS:  # which only machine files have
+            up, down = unit_factor(unit, kind)
+            assert up > 0
+            assert down > 0
+
+
+def test_a_unit_without_a_factor_says_where_it_is_added(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(KINDS, "wear", Kind(0, 1, "m/h, furlong/h", "m/h"))
+    assert unit_factor("m/h", "wear") == (1, 3600)
+    with pytest.raises(
+        LookupError, match=r"'furlong' .* add its multiplier and divisor to _FACTORS"
+    ):
+        unit_factor("furlong/h", "wear")
 
 
 @law_of_each(kind for kind in SI if kind != "ratio")

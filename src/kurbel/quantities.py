@@ -104,7 +104,7 @@ COLUMNS = ByChapter(lambda lists: tuple(column for column in lists.all_columns i
 
 
 def key_values_of(command: str, names: Iterable[str]) -> dict[str, Quantity]:
-    """Return the key values of a command by id: those of its own chapters if these have all the names, else all."""
+    """Return the key values of a command by id: of its own chapters if these have all the names, else all."""
     quantities = key_values_of_chapters(command)
     if all(name in quantities for name in names):
         return quantities
@@ -112,10 +112,10 @@ def key_values_of(command: str, names: Iterable[str]) -> dict[str, Quantity]:
 
 
 def key_values_of_chapters(command: str) -> dict[str, Quantity]:
-    """Return the key values of the chapters of a command by id; no other chapter is opened."""
+    """Return the key values of a command by id: of its own chapters, and of cylinders; no other one is opened."""
     quantities = list[Quantity]()
     for chapter in CHAPTERS:
-        if chapter.command == command:
+        if chapter.command in (CylinderForces.command, command):
             rows = result_rows(chapter.kind, closed=doors_of(chapter.kind))
             quantities += rows.lists.all_key_values
     return Lists((), tuple(quantities)).key_values(command)

@@ -291,7 +291,7 @@ class Computed(Generic[V]):
         repeats: ResultCondition | None = None,
     ) -> None:
         self.name, self.__doc__ = quantity.id, quantity.text
-        self.function = function or (lambda one: one.answers.get(self.name))
+        self.function = function or (lambda row: row.answers.get(self.name))
         self.rows: tuple[QuantityRow, ...] = (QuantityRow(quantity, self.__get__, unless, repeats),)
 
     def __set_name__(self, owner: type, name: str) -> None:

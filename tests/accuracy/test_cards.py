@@ -6,7 +6,7 @@ import pytest
 from kurbel import loads
 from kurbel.accuracy.cards import Drawing, drawn
 from kurbel.accuracy.methods import mp
-from kurbel.accuracy.textbook import DIGITS, reference
+from kurbel.accuracy.textbook import DIGITS, Textbook
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.solver.case import Case
 
@@ -80,5 +80,5 @@ ENGINE = """
 
 def test_kurbel_has_the_work_of_both_ends() -> None:
     with mp.workdps(DIGITS):
-        work, _ = reference(loads(ENGINE), "A_i")
+        work = Textbook(loads(ENGINE)).reference("A_i")
     assert Case(loads(ENGINE)).cylinders[0].work == pytest.approx(float(work), rel=4e-15)

@@ -13,7 +13,7 @@ from kurbel.designs.find import Solutions, find_solutions
 from kurbel.errors import NoSolutionError
 from kurbel.machine_file.source import decode, read
 from kurbel.numerics.search import lowest, roots
-from kurbel.render.sweep_rows import picture
+from kurbel.render.solutions import picture
 from kurbel.solver.flywheel import MachineTurning
 from representative import CONFIGS, few
 

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from kurbel.accuracy.textbook import TextbookMachine
+from kurbel.accuracy.textbook import Textbook, TextbookMachine
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Masses, Piston
@@ -49,7 +49,7 @@ def gauss(torque: Callable[[float], Any], edges: list[float], orders: list[float
 def by_integrals(machine: Machine, orders: list[float]) -> list[complex]:
     """M_ν of one cylinder: its torque with 40 digits, written as the textbooks have it."""
     with mp.workdps(40):
-        book = TextbookMachine(machine, "ΔE")
+        book = TextbookMachine(Textbook(machine), "ΔE")
         edges = sorted(
             {
                 *np.asarray(book.edges, dtype=float),

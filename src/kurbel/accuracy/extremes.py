@@ -19,7 +19,7 @@ import numpy as np
 
 from kurbel.accuracy.linkages import motion_of
 from kurbel.accuracy.methods import Number, largest_and_smallest, mp, mpf
-from kurbel.accuracy.textbook import DIGITS, STEPS, reference
+from kurbel.accuracy.textbook import DIGITS, STEPS, Textbook
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 
@@ -87,6 +87,7 @@ def verdicts(
 
     compute: runs the program: (machine, requested quantity) -> its value, or None if it is left out.
     """
+    textbooks: dict[str, Textbook] = {}
     for case in cases:
         text = case.machine.replace("\\n", "\n")
         if "MANY_POINTS" in text:
@@ -109,7 +110,8 @@ def verdicts(
             expected, missed = case.expected, None
             passed = observed == expected
             if case.ulp:
-                expected, missed = _missed(case, machine, value)
+                textbook = textbooks.setdefault(text, Textbook(machine))
+                expected, missed = _missed(case, textbook, value)
                 passed = missed is not None and missed <= float(case.ulp)
         allowed = None if missed is None else float(case.ulp)
         verdict = "passed" if passed else "FAILED"
@@ -127,22 +129,22 @@ def _refused(case: Probe, error: KurbelError) -> tuple[str, bool]:
     return shorten(status + message, 100, placeholder=" …"), passed
 
 
-def _missed(case: Probe, machine: Machine, answer: float | None) -> tuple[str, float | None]:
+def _missed(case: Probe, textbook: Textbook, answer: float | None) -> tuple[str, float | None]:
     """Return the expected value, and the error of an answer in units of the last place."""
     with mp.workdps(2 * DIGITS if case.asked.startswith("motion") else DIGITS):
-        truth = exact(machine, case.asked) if case.expected == "reference" else mpf(case.expected)
+        truth = exact(textbook, case.asked) if case.expected == "reference" else mpf(case.expected)
         missed = None if answer is None else abs(answer - truth) / math.ulp(float(truth))
         return mp.nstr(truth, 20), None if missed is None or mp.isnan(missed) else float(missed)
 
 
-def exact(machine: Machine, asked: str) -> Number:
+def exact(textbook: Textbook, asked: str) -> Number:
     """Return a requested quantity by the textbook, in SI, with the precision set in mpmath."""
+    machine = textbook.machine
     command, _, quantity = asked.partition(" ")
     name, _, at = quantity.partition("@")
     if command != "motion":
-        found, _ = reference(
-            machine, {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}.get(name, "T_max, T_min")
-        )
+        needs = {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}.get(name, "T_max, T_min")
+        found = textbook.reference(needs)
         return found[("T_max", "T_min").index(name)] if isinstance(found, tuple) else found
     motion, omega = (
         motion_of(machine.cylinders[0].mechanism),

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from kurbel.accuracy.methods import Number, integrals, largest_and_smallest, merged, mp, mpf
-from kurbel.accuracy.textbook import DIGITS, STEPS, TextbookMachine, needed, unknown
+from kurbel.accuracy.textbook import DIGITS, STEPS, Textbook, TextbookMachine, needed, unknown
 from kurbel.arrays import Array
 from kurbel.machine import Machine
 
@@ -198,7 +198,7 @@ class TextbookShaft:
         assert machine.speed is not None
         assert machine.flywheel is not None
         assert machine.load is not None
-        self._book = TextbookMachine(machine, "ΔE")
+        self._book = TextbookMachine(Textbook(machine), "ΔE")
         self.cycle = 360 * machine.revolutions
         self.nominal = 2 * mp.pi * mpf(machine.speed)
         self._rigid = mpf(machine.flywheel.inertia)

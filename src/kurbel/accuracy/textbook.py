@@ -16,8 +16,9 @@ pins. Friction in pins is that under the loads without it, as by the friction ci
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict
 from functools import cache, partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -39,6 +40,8 @@ DIGITS = 40
 STEPS = 24
 """Equal steps of a piece, at which roots are looked for."""
 GRAVITY = "9.80665"
+_FINEST = mpf(10) ** 33
+"""Parts of a degree: angles that differ by less are equal."""
 IDLE = mpf("1e-9")
 """Work over the stroke in N, below which a piston neither drives nor is driven."""
 
@@ -187,6 +190,7 @@ class TextbookCylinder:
 
         self.pistons = [self._piston(machine, number) for number in range(len(cylinder.pistons))]
         self._piece = cache(self._piece_of)
+        self._states: dict[tuple[int, int], Forces] = {}
         self.edges = merged(np.array(list(self._corners())))
         if self._rubs:
             self.edges = self._between_kinks()
@@ -330,7 +334,17 @@ class TextbookCylinder:
     # forces
 
     def at(self, phi: Number, within: Number) -> Forces:
-        """Return the forces at a crank angle."""
+        """Return the forces at a crank angle, computed once for all quantities and equal cylinders."""
+        cycle = 360 * self.turns
+        angle, inside = phi % cycle, within % cycle
+        key = int(mp.nint(angle * _FINEST)), int(mp.nint(inside * _FINEST))
+        state = self._states.get(key)
+        if state is None:
+            state = self._states[key] = self._forces(angle, inside)
+        return state
+
+    def _forces(self, phi: Number, within: Number) -> Forces:
+        """Return the forces at a crank angle, computed anew."""
         pose, (sense, lines) = self.motion.at(phi), self._piece(within)
         gas = self._gas(pose, lines)
         resistance = self._resistance[0 if (sense > 0) == self.motion.works_out else 1]
@@ -518,13 +532,39 @@ def needed(quantity: str, addends: Addends, phi: Number, within: Number) -> Numb
     return total
 
 
+class Textbook:
+    """The references of a machine, which share its cylinders; equal cylinders are one."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self._made: list[tuple[dict[str, Any], TextbookCylinder]] = []
+
+    def cylinder(self, cylinder: Cylinder) -> TextbookCylinder:
+        """Return the cylinder of the textbook for one of the file; where it is on the shaft makes no difference."""
+        values = asdict(cylinder)
+        for key in ("name", "crank_position", "bank_angle", "axial_position"):
+            del values[key]
+        for earlier, textbook_cylinder in self._made:
+            if earlier == values:
+                return textbook_cylinder
+        textbook_cylinder = TextbookCylinder(self.machine, cylinder)
+        self._made.append((values, textbook_cylinder))
+        return textbook_cylinder
+
+    def reference(self, quantity: str) -> Found:
+        """Return A_i and A_f in J, T_max and T_min in N, of the first cylinder, or ΔE in J."""
+        book = TextbookMachine(self, quantity)
+        return by_gauss(quantity, book.function(quantity), book.edges, STEPS)
+
+
 class TextbookMachine:
     """Cylinders with the places of their cranks; edges: of all pieces of the cycle, at the angles of crank 1."""
 
-    def __init__(self, machine: Machine, quantity: str) -> None:
+    def __init__(self, textbook: Textbook, quantity: str) -> None:
+        machine = textbook.machine
         members = taking_part(machine, quantity)
         self.cylinders = [
-            (TextbookCylinder(machine, cylinder), mpf(crank_lag(cylinder, machine.cylinders[0])))
+            (textbook.cylinder(cylinder), mpf(crank_lag(cylinder, machine.cylinders[0])))
             for cylinder in members
         ]
         turns = machine.revolutions if quantity == "ΔE" else self.cylinders[0][0].turns
@@ -593,9 +633,3 @@ class TextbookMachine:
     def function(self, quantity: str) -> Callable[[Array, Array], Array]:
         """Return what a quantity is computed from."""
         return np.frompyfunc(partial(needed, quantity, self.addends), 2, 1)
-
-
-def reference(machine: Machine, quantity: str) -> tuple[Found, TextbookMachine]:
-    """Return A_i and A_f in J, T_max and T_min in N, of the first cylinder, or ΔE in J; and the machine behind it."""
-    book = TextbookMachine(machine, quantity)
-    return by_gauss(quantity, book.function(quantity), book.edges, STEPS), book

@@ -31,9 +31,9 @@ from kurbel.accuracy.textbook import (
     NEEDED,
     Addends,
     Share,
+    Textbook,
     TextbookMachine,
     needed,
-    reference,
     taking_part,
     unknown,
 )
@@ -93,6 +93,7 @@ def examined(
     rows: list[Trial] = []
     left_out: dict[str, list[str]] = {}
     motion = "xcb" if machine.cylinders and len(degrees) else ""
+    textbook = Textbook(machine)
     with mp.workdps(DIGITS):
         for quantity in (*motion, *NEEDED):
             why = ""
@@ -102,7 +103,7 @@ def examined(
                 if what := next(unknown(machine, quantity), ""):
                     why = f"no independent calculation of {what}"
                 else:
-                    truth, methods = compared(machine, quantity, degrees)
+                    truth, methods = compared(textbook, quantity, degrees)
                     if np.abs(truth).max() > 1e-30:
                         rows += rows_of(quantity, truth, methods, quick)
                     else:
@@ -114,15 +115,15 @@ def examined(
     return rows, left_out
 
 
-def compared(machine: Machine, quantity: str, degrees: Array) -> tuple[Array, Iterator[Method]]:
+def compared(textbook: Textbook, quantity: str, degrees: Array) -> tuple[Array, Iterator[Method]]:
     """Return the exact values (n,) of a quantity, in mpmath's numbers, and the methods for it."""
+    machine = textbook.machine
     if quantity in "xcb":
         motion, order = motion_of(machine.cylinders[0].mechanism), "xcb".index(quantity)
         truth = [motion.at(mpf(float(angle)))[order] for angle in degrees]
         return np.array(truth), motion_methods(machine, degrees, order)
-    exact, book = reference(machine, quantity)
-    values = np.atleast_1d(np.array(exact, dtype=object))
-    return values, force_methods(machine, quantity, book)
+    exact = np.atleast_1d(np.array(textbook.reference(quantity), dtype=object))
+    return exact, force_methods(machine, quantity, TextbookMachine(textbook, quantity))
 
 
 def motion_methods(machine: Machine, degrees: Array, order: int) -> Iterator[Method]:

@@ -64,6 +64,7 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
         "Cranks": _crank_entries(machine),
         "Whole machine": (*_turning_entries(machine), *of_whole),
         "Crankshaft": _crankshaft_entries(case),
+        "Oil film": _oil_film_entries(case),
         "Balance": _balance_entries(case),
         "Shaft line": _shaft_entries(case),
         "Delivery": _delivery_entries(case),
@@ -160,14 +161,16 @@ def _left_out(text: str, path: Path = ()) -> CheckEntry:
 
 def _crank_entries(machine: Machine) -> Iterator[CheckEntry]:
     """Yield for each of several cylinders by which angle it follows the first, and where its crank pin is."""
-    if len(machine.cylinders) == 1:
+    if len(machine.cylinders) < 2:
         return
+    first = machine.cylinders[0]
     is_banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
     for cylinder in machine.cylinders:
         text = f"{cylinder.crank_position:g} deg after the first, "
         if is_banked:
             text += f"stroke line at {cylinder.bank_angle:g} deg: "
-        behind = rounded_within_cycle(pin_lag(cylinder, machine.cylinders[0]), 360.0)
+        pin_difference = pin_lag(cylinder, first) - pin_lag(first, first)
+        behind = rounded_within_cycle(pin_difference, 360.0)
         text += f"crank pin {behind:g} deg behind the first"
         yield CheckEntry(cylinder.name, text)
 
@@ -208,6 +211,28 @@ def _crankshaft_entries(case: Case) -> Iterator[CheckEntry]:
         yield from _computed(
             "forces on the bearings, stresses in pin and webs", strength_left_out(machine), path
         )
+
+
+def _oil_film_entries(case: Case) -> Iterator[CheckEntry]:
+    """Yield the warnings on oil films, and what is computed of them."""
+    if case.machine.oil_film is None:
+        return
+    from kurbel.notes.oil_film import film_warnings
+
+    path = ("oil_film",)
+    try:
+        bearings = case.bearings.parts
+    except KurbelError as error:
+        yield _left_out(f"oil film: {error}", path)
+        return
+    for text in as_far_as_solved(film_warnings(case), "bearings"):
+        yield CheckEntry("oil film", text, "warning", path)
+    having = [bearing.name for bearing in bearings if bearing.oil and not bearing.film_obstacle]
+    if having:
+        yield CheckEntry("computed", f"oil film of {together(having)}")
+    for bearing in bearings:
+        if bearing.film_obstacle:
+            yield _left_out(f"oil film of {bearing.name}: {bearing.film_obstacle}", path)
 
 
 def _balance_entries(case: Case) -> Iterator[CheckEntry]:

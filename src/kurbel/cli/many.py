@@ -184,6 +184,6 @@ def find(**options: Any) -> None:
     --greatest need none. Places where the key value jumps over the wanted one, and parts of the range in which designs
     fail, are reported. With --write, FILE is printed with what was found; comments stay.
     """
-    from kurbel.cli.sweeping import run_find
+    from kurbel.cli.finding import run_find
 
     run_find(**options)

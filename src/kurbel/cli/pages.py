@@ -88,7 +88,7 @@ def plot(**options: Any) -> None:
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
     and pdf need typst. FILE may be - for standard input.
     """
-    from kurbel.cli.showing import draw_pictures
+    from kurbel.cli.drawing import draw_pictures
 
     draw_pictures(**options)
 

@@ -1,4 +1,4 @@
-"""What `kurbel report` and `kurbel plot` do: a whole page, and pictures in the terminal or in a file."""
+"""What `kurbel report` does: a whole page."""
 
 import os
 import sys
@@ -9,13 +9,9 @@ import click
 from kurbel.cli.group import ProgressLine
 from kurbel.cli.request import case_of, cases_of
 from kurbel.machine_file.overrides import key_texts
-from kurbel.page.summary import facts_of, subtitle_of, tiles
 from kurbel.page.whole import side_by_side, whole_report
-from kurbel.pictures.picture_source import PictureOptions
-from kurbel.pictures.pictures import PICTURES, pictures, pictures_of
 from kurbel.render import Look
-from kurbel.render.drawing import check_file, check_poster, draw_output, draw_poster
-from kurbel.render.output import refuse_overwriting, write_entries, write_out
+from kurbel.render.output import refuse_overwriting, write_out
 from kurbel.render.report_page import report_page
 
 
@@ -66,49 +62,3 @@ def write_page(
     write_out(
         report_page(document, Look("html", comma=comma, digits=digits), today), file_name, "utf-8"
     )
-
-
-def draw_pictures(
-    file: str | None,
-    case_name: str,
-    overrides: tuple[str, ...],
-    names: tuple[str, ...],
-    listed: bool,
-    file_name: str | None,
-    angles: tuple[float, ...] | None,
-    size: str | None,
-    cylinder: str | None,
-    units: str | None,
-    comma: bool,
-    digits: int | None,
-    width: int | None,
-) -> None:
-    """Draw these pictures of a machine, or list them; size: that of a poster: the options of the command."""
-    if listed and file_name is not None:
-        raise click.UsageError("--list draws nothing; leave --output out.")
-    if file is None and not listed:
-        raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
-    file_name = None if file_name == "-" else file_name
-    if size is not None:
-        size = check_poster(size, file_name)
-        if set(names) - {"mechanism"} or listed:
-            raise click.UsageError(
-                "--poster draws the mechanism alone; leave other pictures and --list out."
-            )
-        names = ("mechanism",)
-    elif file_name is not None:
-        check_file(file_name)
-    options, look = (
-        PictureOptions(units or "metric", cylinder, angles),
-        Look(comma=comma, digits=digits, width=width),
-    )
-    case = None if file is None else case_of(file, case_name, overrides, file_name)
-    if case is None or listed:
-        kinds = PICTURES if case is None else pictures_of(case, options)
-        write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
-        return
-    drawn = pictures(case, names, options)
-    if size is not None and file_name is not None:
-        facts = tiles(facts_of(case).values(), options.system)
-        return draw_poster(next(drawn), subtitle_of(case.machine), facts, look, file_name, size)
-    draw_output(drawn, look, file_name)

@@ -1,6 +1,5 @@
-"""What `kurbel sweep` and `kurbel find` do with their options: compute, choose, draw and write what is found."""
+"""What `kurbel sweep` does with its options: compute, choose and write the rows."""
 
-import json
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import closing
@@ -18,24 +17,15 @@ from kurbel.designs.chosen import (
     read_condition,
     summary_heads,
 )
-from kurbel.designs.find import Solution, Solutions
-from kurbel.designs.find import find_solutions as found_in
 from kurbel.designs.plan import MOST_ROWS, read_axis
 from kurbel.designs.plan import shard as rows_of_shard
 from kurbel.designs.sweep import Spec, Sweep, computed_rows, likely_jobs
-from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
-from kurbel.machine_file.overrides import rewritten
 from kurbel.render import Look
-from kurbel.render.drawing import check_file, draw_output
-from kurbel.render.output import refuse_overwriting, write_out
+from kurbel.render.output import refuse_overwriting
 from kurbel.render.sweep_rows import (
     NOTHING_WRITTEN,
     Titles,
-    as_json,
-    as_rows,
-    picture,
-    remarks,
     rows_written_before,
     write_rows,
 )
@@ -189,92 +179,3 @@ def _holds_all(row: Design, conditions: Sequence[RowCondition]) -> bool:
 def _with_columns(row: Design, shown: Sequence[tuple[str, int]]) -> Design:
     """Return a row with the values of the columns that are shown."""
     return row._replace(values=tuple(row.values[index] for _, index in shown))
-
-
-# find
-
-_SUFFIXES_OF_FOUND = {".csv": "csv", ".json": "json", ".md": "markdown"}
-_DIGITS = 7
-"""Significant digits of a table: values are found to be written into a file."""
-
-
-def run_find(
-    file: str,
-    case_name: str,
-    overrides: tuple[str, ...],
-    equations: tuple[str, ...],
-    vary: tuple[str, ...],
-    least: str,
-    greatest: str,
-    conditions: tuple[str, ...],
-    plot: bool,
-    write: bool,
-    take: int | None,
-    units: str | None,
-    format: str | None,
-    file_name: str | None,
-    comma: bool,
-    digits: int | None,
-) -> None:
-    """Search, and print, draw or write what is found: the options of the command. Raises KurbelError."""
-    refused = (
-        (write and case_name, "--write prints FILE; leave --case out."),
-        (write and format, "--write prints FILE; leave --format out."),
-        (take and not write, "--take chooses the solution for --write; give --write too."),
-        (plot and write, "--plot draws; leave --write out."),
-        (plot and format, "--plot draws; leave --format out."),
-        (plot and len(vary) > 1, "--plot draws a key value over one key, and two are varied."),
-    )
-    for is_wrong, message in refused:
-        if is_wrong:
-            raise click.UsageError(message)
-    if plot and file_name:
-        check_file(file_name)
-    written = "table" if write or plot else format_of(format, file_name, _SUFFIXES_OF_FOUND, comma)
-    refuse_overwriting(file_name, (file,))
-    origin = source.read(file)._replace(case=case_name).set_over(overrides)
-    with ProgressLine("find") as progress:
-        solutions = found_in(origin, vary, equations, least, greatest, conditions, progress)
-    if write:
-        solution = _solution_to_write(solutions, take)
-        write_out([_with_values(origin, solutions, solution)], file_name, "utf-8")
-        return
-
-    system = units or ("si" if written in ("csv", "json") else "metric")
-    if plot:
-        draw_output([picture(solutions, system)], Look(comma=comma, digits=digits), file_name)
-    elif written == "json":
-        text = json.dumps(as_json(solutions), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
-        write_out([text], file_name, "utf-8")
-    else:
-        default_digits = None if written == "csv" else _DIGITS
-        look = Look(written, comma=comma, digits=digits or default_digits)
-        titles, rows = as_rows(solutions, system)
-        write_rows(rows, titles, look, file_name, to_stderr)
-    for remark in remarks(solutions):
-        to_stderr(remark)
-
-
-def _solution_to_write(solutions: Solutions, take: int | None) -> Solution:
-    """Return the solution that is written. Raises click.UsageError where several are found, or none of this number."""
-    count = len(solutions.found)
-    if count > 1 and not take:
-        choices = "; ".join(_in_words(solutions, solution) for solution in solutions.found)
-        raise click.UsageError(f"--write: {count} solutions; choose one by --take N: {choices}")
-    if take and take > count:
-        raise click.UsageError(f"--take {take}: there {'are' if count > 1 else 'is'} {count}.")
-    return solutions.found[(take or 1) - 1]
-
-
-def _in_words(solutions: Solutions, solution: Solution) -> str:
-    """Return the values of the varied keys, as in `bore = 450 mm, stroke = 600 mm`."""
-    pairs = zip(solutions.varied, solution.values)
-    return ", ".join(f"{varied.key} = {varied.written(value, 9)}" for varied, value in pairs)
-
-
-def _with_values(origin: Origin, solutions: Solutions, solution: Solution) -> str:
-    """Return the text of the machine file with what was set over it, and what was found."""
-    texts = dict(text.split("=", 1) for text in origin.overrides)
-    for varied, value in zip(solutions.varied, solution.values):
-        texts[varied.key] = f"{varied.in_unit(value)!r} {varied.unit}".rstrip()
-    return rewritten(origin.text, texts)

@@ -191,6 +191,17 @@ KINDS = {
         1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"
     ),
     "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K", written="287 J/kg K"),
+    "viscosity": Kind(
+        1e-6,
+        1e3,
+        "Pa s, mPa s, cP, P, N s/m2, kgf s/m2, lbf s/in2, reyn",
+        "Pa s",
+        "mPa s",
+        "cP",
+        "reyn",
+        "30 mPa s",
+    ),
+    "film": Kind(1e-12, 1e9, _LENGTHS, "m", "um", "um", "in", "3 um"),
     "spring": Kind(
         1e-15,
         1e3,
@@ -284,6 +295,10 @@ _FACTORS: dict[str, UnitFactor] = {
     "J": (1, 1),
     "W": (1, 1),
     "PS": (75 * GRAVITY, 1),
+    # viscosity in Pa s
+    "P": (1, 10),
+    "cP": (1, 1e3),
+    "reyn": (_LBF, _INCH * _INCH),
     "hp": (550 * _LBF * 3048, 1e4),
 }
 """Single units, of which those of every kind are made."""
@@ -331,8 +346,8 @@ ZEROED_UNITS = {
 
 
 @cache
-def _units_of(kind: str) -> dict[str, UnitFactor]:
-    """Return the units of a kind by name."""
+def _names_of(kind: str) -> tuple[str, ...]:
+    """Return the names of the units of a kind."""
     names: list[str] = []
     for listed in KINDS[kind].units.split("; "):
         product = re.fullmatch(r"(.*) ([*/]) (.*)", listed)
@@ -342,7 +357,7 @@ def _units_of(kind: str) -> dict[str, UnitFactor]:
         sign = "/" if product[2] == "/" else " "
         for first in product[1].split(", "):
             names += [first + sign + second for second in product[3].split(", ")]
-    return {name: _factor(name, kind) for name in names}
+    return tuple(dict.fromkeys(names))
 
 
 def _factor(unit: str, kind: str) -> UnitFactor:
@@ -356,8 +371,14 @@ def _factor(unit: str, kind: str) -> UnitFactor:
     divisor = 1.0
     for slash, text in re.findall(r"(/?)([^ /]+)", re.sub("(long|short) ", r"\1_", unit)):
         base, digits = re.findall(r"^(.*?\D|1)(-?\d)?$", text)[0]
+        factor = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS.get(base)
+        if factor is None:
+            raise LookupError(
+                f"the unit '{base}' in {unit} of the kind {kind} has no factor: add its multiplier and divisor "
+                "to _FACTORS of kurbel.declared.units, or take it out of KINDS"
+            )
+        more, less = factor
         power = int(digits or 1)
-        more, less = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS[base]
         is_divisor = (power < 0) != bool(slash)
         if is_divisor:
             more, less = less, more
@@ -398,20 +419,25 @@ def unit_factor(unit: str, kind: str) -> UnitFactor:
 
     Raises UnitError with the known units and, where the unit is one of another kind, that kind.
     """
-    units = _units_of(kind)
+    names = _names_of(kind)
     name = _normal(unit)
-    if name in units:
-        return units[name]
-    names = ", ".join([*units][:8])
-    if len(units) > 8:
-        names += ", …"
+    if name in names:
+        return _factor(name, kind)
+    listed = ", ".join(names[:8])
+    if len(names) > 8:
+        listed += ", …"
     hint = unit_hint(name, kind)
-    raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {names}){hint}")
+    raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {listed}){hint}")
 
 
 def kind_name(kind: str) -> str:
     """Return what a kind is called in messages."""
-    special = {"gd2": "GD²", "speed": "speed of rotation", "unbalance": "mass-times-radius"}
+    special = {
+        "gd2": "GD²",
+        "speed": "speed of rotation",
+        "unbalance": "mass-times-radius",
+        "film": "film thickness",
+    }
     return special.get(kind, kind.replace("_", " "))
 
 
@@ -528,7 +554,7 @@ def kinds() -> tuple[str, ...]:
 
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
-    names = tuple(_units_of(kind))
+    names = _names_of(kind)
     return (*names, *ZEROED_UNITS) if kind == "pressure" else names
 
 
@@ -547,11 +573,19 @@ _SPOKEN = (
 )
 """How people write some units, and what these are here."""
 
+_KINEMATIC = ("mm2/s", "cm2/s", "m2/s", "cSt", "St", "ft2/s", "in2/s")
+"""Units of kinematic viscosity, by which oils are sold."""
+
 
 def unit_hint(name: str, kind: str) -> str:
     """Return what to write instead of a unit, of which the white space is that of ours; '' where nothing is known."""
     if kind == "length" and re.fullmatch(r"(ft|['′’])[ -]*[0-9].*", name):
         return "; write feet and inches in one unit, such as '90 in' for 7 ft 6 in"
+    if kind == "viscosity" and name in _KINEMATIC:
+        return (
+            f"; {name} is a unit of kinematic viscosity; times the density it is the dynamic one: "
+            "100 mm2/s · 0.88 kg/dm3 = 88 mPa s"
+        )
     if kind == "spring":
         return "; it is height over pressure: a spring of 60 lb per inch is '1/60 in/psi'"
     number = NUMBER.match(name)

@@ -282,9 +282,10 @@ def _with_same_branches(machine: Machine, indices: Indices) -> list[Indices]:
         return numbers
 
     changed(machine, coded)
-    first = machine.cylinders[0]
     for cylinder, other in combinations(machine.cylinders, 2):
+        first = machine.cylinders[0]
         bank_difference = cylinder.bank_angle - other.bank_angle
+        first = machine.cylinders[0]
         pin_difference = pin_lag(cylinder, first) - pin_lag(other, first)
         axial_position = 0.0 if cylinder.axial_position is None else cylinder.axial_position
         other_position = 0.0 if other.axial_position is None else other.axial_position

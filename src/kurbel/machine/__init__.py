@@ -44,6 +44,7 @@ if TYPE_CHECKING:
         SharedCounterweights,
     )
     from kurbel.machine.known_effort import KnownEffort
+    from kurbel.machine.oil_film import OilFilms
     from kurbel.machine.pumped import Gas, Pump
     from kurbel.machine.several import EqualCylinders
     from kurbel.machine.shaft_line import ShaftLine, ShaftPart
@@ -121,10 +122,25 @@ def _pump() -> type[Pump]:
     return Pump
 
 
+def _oil_films() -> type[OilFilms]:
+    from kurbel.machine.oil_film import OilFilms
+
+    return OilFilms
+
+
 def _equal_cylinders() -> type[EqualCylinders]:
     from kurbel.machine.several import EqualCylinders
 
     return EqualCylinders
+
+
+def _throw_of_first(cylinders: tuple[Cylinder, ...]) -> Iterator[Rule]:
+    """Yield the rule that the throws count from that of cylinder 1."""
+    if not cylinders or cylinders[0].throw_angle is None:
+        return
+    message = "the throws count from that of cylinder 1; give 0 deg, or leave it out"
+    is_turned = np.not_equal(cylinders[0].throw_angle % 360.0, 0.0)
+    yield Rule(("cylinders", 0, "throw_angle"), is_turned, message)
 
 
 class LoadCase(Record):
@@ -283,6 +299,9 @@ class Machine(Record):
         "Slip, liquid, pipes and vessels of a pump; its driven pistons are then those of pumps",
         absent="no pipes",
     )
+    oil_film: OilFilms | None = field(
+        _oil_films, "Oil between pins and shells, for the thickness of its film", absent="no film"
+    )
     origin: Origin | None = None
     cases: tuple[LoadCase, ...] = field(
         [LoadCase],
@@ -371,6 +390,11 @@ class Machine(Record):
                     self.crankshaft, cylinder.mechanism.rubbing_pin
                 )
                 yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
+        if self.oil_film:
+            frictions = [cylinder.friction for cylinder in self.cylinders]
+            for rule in self.oil_film.rules_beside(self.crankshaft, frictions):
+                yield rule.below("oil_film")
+        yield from _throw_of_first(self.cylinders)
         yield from crowded(self.cylinders)
         for key, diagram in (
             ("effort", self.effort),

@@ -64,7 +64,12 @@ _SPRING = (
     "'bore: 1128.379167 mm', and in 'indicator.head_end' 'unit: Pa', "
     "'expansion: [[0, F1], [1, F2]]', 'compression: [[1, F2], [0, F1]]' with forces in N"
 )
+_PIN_OFFSET = (
+    "the angle between the two halves of a split crank pin is 'throw_angle'; a piston pin beside the middle of its "
+    "piston is an 'offset', a length, negative toward the thrust side"
+)
 _NO_KEYS = {
+    "pin_offset": _PIN_OFFSET,
     **dict.fromkeys(
         ("link_rod", "master_rod", "master", "slave_rod", "articulated_rod"), _ROD_ON_ROD
     ),
@@ -105,7 +110,8 @@ class Cylinder(Record):
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
     is left out; crank_position: degrees by which its inner dead centre follows that of cylinder 1, None in a cylinder
-    from a file that gives none, until the machine sets it; bank_angle: degrees from the stroke line of cylinder 1 to
+    from a file that gives none, until the machine sets it; throw_angle: degrees by which its pin lags that of cylinder
+    1, None where the file does not give it; bank_angle: degrees from the stroke line of cylinder 1 to
     its own, in the sense of rotation; axial_position: place along the shaft in m, None where it is not known;
     ram_force, moment: what the output works against, where it slides or only swings. Raises
     RuleError for parts that the mechanism cannot have.
@@ -155,6 +161,16 @@ class Cylinder(Record):
         default=0.0,
         absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
     )
+    _throw_angle = alternative(
+        "angle",
+        "Angle by which its crank pin, as the shaft is built, lags that of cylinder 1; a `firing_order` then only "
+        "gives the turn in which a four-stroke cylinder fires",
+        instead="crank_position",
+        absent="from `crank_position`",
+        example="120 deg",
+        also=("pin_angle", "split_pin", "crank_pin_angle", "splay_angle", "throw"),
+    )
+    throw_angle: float | None = None
     bank_angle: float = field(
         "angle",
         "Angle from the stroke line of cylinder 1 to this one, in the sense of rotation",
@@ -201,11 +217,13 @@ class Cylinder(Record):
         piston: Piston | None = None,
         tandem: tuple[Piston, ...] = (),
         like: str = "",
+        throw_angle: float | None = None,
         **keys: Any,
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
         pistons = () if piston is None else (piston, *tandem)
-        return cls(pistons=pistons, **{"name": "", "crank_position": None, **keys})
+        given = {"name": "", "crank_position": None, "throw_angle": throw_angle, **keys}
+        return cls(pistons=pistons, **given)
 
     @cached_property
     def timed_pistons(self) -> tuple[Piston, ...]:
@@ -370,7 +388,14 @@ def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:
         yield Rule("center_of_gravity", rod.center_of_gravity > length, beyond, numbers)
 
 
-_PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweights")
+_PLACE = (
+    "name",
+    "crank_position",
+    "throw_angle",
+    "bank_angle",
+    "axial_position",
+    "counterweights",
+)
 """Keys of a cylinder on its place along the shaft, and on what the shaft carries there."""
 
 

@@ -371,6 +371,11 @@ class Indicator(Record):
             _mirrored(given.get("head_end")) if given["crank_end"] == "mirrored" else {}
         ),
     )
+    role: str | None = field(
+        ("engine", "compressor", "pump", "steam"),
+        "What the cylinder is, by which a measured trace is judged",
+        absent="by cycle and shape of the trace",
+    )
     absolute: bool = False
 
     @classmethod

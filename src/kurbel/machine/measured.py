@@ -172,6 +172,17 @@ class Measured(Columns):
         example="17",
     )
 
+    suction_line = alternative(
+        "pressure",
+        "Pressure in the suction line of a compressor, gauge or absolute as in `pressures`",
+        absent="that in the cylinder at its largest volume",
+    )
+    discharge_line = alternative(
+        "pressure",
+        "Pressure in the discharge line of a compressor, gauge or absolute as in `pressures`",
+        absent="that in the cylinder at its smallest volume",
+    )
+
     @classmethod
     def of_keys(
         cls,
@@ -186,6 +197,8 @@ class Measured(Columns):
         drift: str | None = None,
         clearance: float | None = None,
         compression_ratio: float | None = None,
+        suction_line: float | None = None,
+        discharge_line: float | None = None,
         **layout: Any,
     ) -> Trace:
         """Return the trace that these keys describe, its file read."""
@@ -226,6 +239,9 @@ class Measured(Columns):
             against=against,
             unit=up / down,
             scale=scale,
+            timed=laid_out.angle_unit in SECONDS,
+            suction=suction_line,
+            discharge=discharge_line,
         )
 
 

@@ -10,7 +10,8 @@ from kurbel.declared.forms.values import FIRING_ORDER
 from kurbel.declared.record import Record, Rule, field
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
-from kurbel.machine.cylinder import Cylinder
+from kurbel.machine.cylinder import Cylinder, crank_lag
+from kurbel.numerics.arithmetic import where as choose
 
 
 class EqualCylinders(Record):
@@ -30,12 +31,31 @@ class EqualCylinders(Record):
         instead="firing_order",
         example="[0 deg, 120 deg, 240 deg]",
     )
+    throw_angles: tuple[float, ...] | None = field(
+        ["angle"],
+        "Angles by which the crank pins, as the shaft is built, lag the first: one for each throw along the shaft, "
+        "which has one cylinder of every bank, or one for each cylinder, of split pins; a `firing_order` beside them "
+        "only gives the turns in which four-stroke cylinders fire",
+        absent="from the firing order or the crank positions",
+        instead="crank_positions",
+        example="[0 deg, 120 deg, 240 deg]",
+        also=("throws", "throw_angle", "split_pin", "split_pins", "pin_angles", "crank_pins"),
+    )
     spacing: float | None = field(
         "length",
-        "Distance between neighbouring cylinders of a bank along the shaft, the first of every bank at 0; 0 mm: two "
-        "rods at one place; for rods side by side list the cylinders, each with its axial_position",
+        "Distance between neighbouring throws along the shaft, and so of the cylinders of a bank, the first at 0; "
+        "0 mm: all rods at one place",
         least=0,
         absent="unbalanced moments left out",
+    )
+    bank_offset: float = field(
+        "length",
+        "Distance along the shaft from each cylinder to the next one of the same throw, in the next bank; negative "
+        "where that one is set back",
+        default=0.0,
+        absent="0 mm",
+        needs="spacing",
+        also=("rod_offset", "bank_stagger", "stagger"),
     )
     bank_angles: tuple[float, ...] = field(
         ["angle"],
@@ -63,34 +83,73 @@ class EqualCylinders(Record):
         is_set_twice = positions > 0 and self.each.crank_position is not None
         advice = "'crank_positions' sets it; leave it out"
         yield Rule(("each", "crank_position"), is_set_twice, advice)
+        yield from self._throw_rules()
+
+    def _throw_rules(self) -> Iterator[Rule]:
+        """Yield the rules on the throws: one angle for each throw or cylinder, and nothing beside them."""
+        angles = len(self.throw_angles or ())
+        banks = len(set(self.bank_angles))
+        throws = self._throws_along_the_shaft
+        advice = f"{angles} angles for {self.count} cylinders"
+        if throws in (None, self.count):
+            advice += f"; give {self.count}, one for each"
+        else:
+            advice += f" in {banks} banks; give {throws}, one for each throw, or {self.count}"
+        yield Rule("throw_angles", angles not in (0, throws, self.count), advice)
+
+        is_set_twice = angles > 0 and self.each.crank_position is not None
+        advice = "'throw_angles' sets it; leave it out"
+        yield Rule(("each", "crank_position"), is_set_twice, advice)
+
+        advice = "equal cylinders have 'throw_angles' beside 'count', one for each throw"
+        yield Rule(("each", "throw_angle"), self.each.throw_angle is not None, advice)
+
+    @property
+    def _bank_of_each(self) -> tuple[float, ...]:
+        """The bank angle of every cylinder."""
+        return self.bank_angles * (self.count // len(self.bank_angles))
+
+    @property
+    def _throws_along_the_shaft(self) -> int | None:
+        """How many throws there are if each has one cylinder of every bank; None where banks are not alike."""
+        angles = self._bank_of_each
+        sizes = {angles.count(angle) for angle in angles}
+        return sizes.pop() if len(sizes) == 1 else None
 
     @property
     def cylinders(self) -> tuple[Cylinder, ...]:
-        """Each with its name and its place; its crank position if that is given."""
-        angles = self.bank_angles * (self.count // len(self.bank_angles))
+        """Each with its name and its place; its crank position or throw if that is given."""
+        angles = self._bank_of_each
+        banks = list(dict.fromkeys(angles))
         cylinders = []
         for index, angle in enumerate(angles):
             # the same bank angle occurs once for each cylinder of the bank before this one
-            in_bank = angles[:index].count(angle)
-            cylinders.append(self._cylinder(index, angle - angles[0], in_bank))
+            throw = angles[:index].count(angle)
+            cylinders.append(self._cylinder(index, angle - angles[0], throw, banks.index(angle)))
         return tuple(cylinders)
 
-    def _cylinder(self, index: int, bank_angle: float, in_bank: int) -> Cylinder:
-        """Return a cylinder; bank_angle: against the first bank; in_bank: its number in the bank, from 0."""
+    def _cylinder(self, index: int, bank_angle: float, throw: int, bank: int) -> Cylinder:
+        """Return a cylinder; bank_angle: against the first bank; throw, bank: numbers from 0."""
         pattern = self.each
         crank_position = pattern.crank_position
         if self.crank_positions:
             crank_position = self.crank_positions[index]
+        throw_angle = None
+        if self.throw_angles:
+            number = index if len(self.throw_angles) == self.count else throw
+            throw_angle = self.throw_angles[number] - self.throw_angles[0]
         inclination = pattern.inclination
         if bank_angle and inclination is not None:
             inclination = (inclination + bank_angle + 180.0) % 360.0 - 180.0
         axial_position = pattern.axial_position
         if self.spacing is not None:
-            axial_position = self.spacing * in_bank + (axial_position or 0.0)
+            along_the_shaft = self.spacing * throw + self.bank_offset * bank
+            axial_position = along_the_shaft + (axial_position or 0.0)
         return replace(
             pattern,
             name=f"{pattern.name or 'cylinder'} {index + 1}",
             crank_position=crank_position,
+            throw_angle=throw_angle,
             bank_angle=pattern.bank_angle + bank_angle,
             inclination=inclination,
             axial_position=axial_position,
@@ -106,6 +165,8 @@ def in_order(
     """
     if isinstance(cylinders, EqualCylinders):
         return _equal_in_order(cylinders, order, cycle)
+    if any(cylinder.throw_angle is not None for cylinder in cylinders):
+        return on_throws(cylinders, order, cycle, ("firing_order",))
     if order:
         return fired(cylinders, order, cycle, ("firing_order",))
     is_free = [cylinder.crank_position is None for cylinder in cylinders]
@@ -124,6 +185,9 @@ def _equal_in_order(
     if order and (equal.firing_order or equal.crank_positions):
         what = "crank positions are" if equal.crank_positions else "a firing order is"
         refused(f"{what} also given in 'cylinders'; leave one of them out", "firing_order")
+    if equal.throw_angles:
+        where = ("cylinders", "firing_order") if equal.firing_order else ("firing_order",)
+        return on_throws(equal.cylinders, equal.firing_order or order, cycle, where)
     if equal.firing_order:
         return fired(equal.cylinders, equal.firing_order, cycle, ("cylinders", "firing_order"))
     if order:
@@ -156,8 +220,7 @@ def fired(
     cylinder once, and if crank positions are given, too.
     """
     count = len(cylinders)
-    if len(order) != count:
-        refused(f"it names {len(order)} cylinders, the machine has {count}", *where)
+    _refuse_other_count(order, count, where)
     advice = "'firing_order' sets the crank positions; leave it out"
     refuse(
         *(
@@ -174,6 +237,93 @@ def fired(
         position = longest_cycle * intervals_after_first / count
         in_place.append(replace(cylinder, crank_position=position))
     return tuple(in_place)
+
+
+def _refuse_other_count(order: tuple[int, ...], count: int, where: Path) -> None:
+    """Raise RuleError for a firing order that does not name each of so many cylinders once."""
+    if len(order) != count:
+        refused(f"it names {len(order)} cylinders, the machine has {count}", *where)
+
+
+_WHOLE_TURN = 1e-9
+"""Degrees short of a whole turn that rounding explains."""
+
+
+def on_throws(
+    cylinders: Sequence[Cylinder], order: tuple[int, ...] | None, cycle: str, where: Path
+) -> tuple[Cylinder, ...]:
+    """Return the cylinders with the crank positions that follow from their throws.
+
+    β = ζ + γ − φ_i,1 + φ_i, and in a four-stroke cycle the turn: that of a firing order, or the most even one. A
+    cylinder without a throw keeps its crank position. cycle: that of the machine; where: the place of the order, for
+    errors. Raises RuleError for an order in which these throws cannot fire.
+    """
+    first = cylinders[0]
+    on_pins = []
+    is_free = []
+    for cylinder in cylinders:
+        is_free.append(cylinder.crank_position is None)
+        position = 0.0 if cylinder.crank_position is None else cylinder.crank_position
+        if cylinder.throw_angle is not None:
+            # crank_lag of a dead centre at β = 0 is φ_i,1 − φ_i
+            lead = crank_lag(replace(cylinder, crank_position=0.0), first)
+            bank_angle = cylinder.bank_angle - first.bank_angle
+            position = (cylinder.throw_angle + bank_angle - lead) % 360.0
+            position = choose(position > 360.0 - _WHOLE_TURN, 0.0, position)
+        on_pins.append(replace(cylinder, crank_position=position))
+    if order is None:
+        return in_even_turns(on_pins, is_free, cycle)
+
+    _refuse_other_count(order, len(cylinders), where)
+    refuse(*_without_throw(cylinders))
+    fired_in_turns = _in_turns_of_order(on_pins, order, cycle)
+    if _firing_sequence(fired_in_turns, order, cycle) != list(order):
+        even = in_even_turns(on_pins, is_free, cycle)
+        best = "-".join(map(str, _firing_sequence(even, order, cycle)))
+        message = f"these throws cannot fire in this order; the most even order on them is {best}"
+        refused(message, *where)
+    return fired_in_turns
+
+
+def _without_throw(cylinders: Sequence[Cylinder]) -> Iterator[Fault]:
+    """Yield a fault for each cylinder but the first that names no throw, where others do, beside a firing order."""
+    advice = "'firing_order' needs the 'throw_angle' of this cylinder, too, or of none"
+    for index, cylinder in enumerate(cylinders):
+        if index > 0 and cylinder.throw_angle is None:
+            yield Fault(("cylinders", index), advice)
+
+
+def _in_turns_of_order(
+    cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: str
+) -> tuple[Cylinder, ...]:
+    """Return the cylinders, four-stroke ones in the turn that is nearest to even intervals in this order."""
+    count = len(cylinders)
+    first = order.index(1)
+    in_turns = []
+    for number, cylinder in enumerate(cylinders, 1):
+        position = cylinder.crank_position
+        even_position = 720.0 * ((order.index(number) - first) % count) / count
+        is_nearer_later = abs(position + 360.0 - even_position) < abs(position - even_position)
+        if CYCLES[cylinder.cycle or cycle] == 2 and is_nearer_later:
+            cylinder = replace(cylinder, crank_position=position + 360.0)
+        in_turns.append(cylinder)
+    return tuple(in_turns)
+
+
+def _firing_sequence(
+    cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: str
+) -> list[int]:
+    """Return the numbers of the cylinders as they fire, begun as the order; what fires at once stays in its order."""
+    longest_cycle = 360.0 * max(CYCLES[cylinder.cycle or cycle] for cylinder in cylinders)
+    first = order.index(1)
+    from_first = [*order[first:], *order[:first]]
+
+    def fires_at(number: int) -> float:
+        position = cylinders[number - 1].crank_position - cylinders[0].crank_position
+        return rounded_within_cycle(position, longest_cycle)
+
+    sequence = sorted(from_first, key=fires_at)
+    return [*sequence[len(order) - first :], *sequence[: len(order) - first]]
 
 
 _TOGETHER = 12

@@ -42,7 +42,6 @@ class Override(NamedTuple):
 def read_override(text: str, option: str = "--set") -> Override:
     """Return the override of a text such as `cylinders.0.bore=450 mm`; raises UsageError.
 
-    >>> read_override("cylinders.0.bore=450 mm")
     >>> override = read_override("cylinders.0.bore=450 mm")
     >>> override.text, override.path, override.value
     ('--set cylinders.0.bore=450 mm', ('cylinders', 0, 'bore'), '450 mm')

@@ -7,7 +7,6 @@ crank angle has. `Mechanism` lists what a new one must supply.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
@@ -24,7 +23,6 @@ ColumnFactor = Callable[[Any, CrankAngle], Any]
 """Takes a mechanism and a crank angle, and returns what the formula of a column has besides ω and a force."""
 
 
-@dataclass(frozen=True, eq=False)
 class Offer:
     """A column that only some mechanisms have, with its formula.
 
@@ -34,11 +32,19 @@ class Offer:
     results of the command; where it is true, the column says nothing new there.
     """
 
-    quantity: Quantity
-    factor: ColumnFactor
-    omega: int = 0
-    force: Formula | None = None
-    unless: ResultCondition | None = None
+    def __init__(
+        self,
+        quantity: Quantity,
+        factor: ColumnFactor,
+        omega: int = 0,
+        force: Formula | None = None,
+        unless: ResultCondition | None = None,
+    ) -> None:
+        self.quantity = quantity
+        self.factor = factor
+        self.omega = omega
+        self.force = force
+        self.unless = unless
 
     def of(self, state: Any) -> Array | None:
         """Return the column of the state of a cylinder at crank angles (n,) in SI; None where it is not known."""
@@ -89,7 +95,6 @@ def requested_column(
     )
 
 
-@dataclass(frozen=True, eq=False)
 class KeyOffer:
     """A key value that only some mechanisms have, with its formula.
 
@@ -97,9 +102,12 @@ class KeyOffer:
     bound: largest value that the sources permit, in SI; a larger one gives a warning.
     """
 
-    quantity: Quantity
-    value: Callable[[Any, Any], Any]
-    bound: float | None = None
+    def __init__(
+        self, quantity: Quantity, value: Callable[[Any, Any], Any], bound: float | None = None
+    ) -> None:
+        self.quantity = quantity
+        self.value = value
+        self.bound = bound
 
     def of(self, results: Any) -> Any:
         """Return the key value from the results of its command, which have the mechanism."""
@@ -131,8 +139,7 @@ Position = tuple[Any, Any]
 SHAFT, PIN = "shaft", "pin"
 
 
-@dataclass(frozen=True, eq=False)
-class Sketch:
+class Sketch(NamedTuple):
     """What is drawn of a mechanism at crank angles, to scale.
 
     joints: places by name, the shaft and the crank pin among them; links: stiff members, each the joints it runs
@@ -165,6 +172,14 @@ class Sketch:
         return cls({SHAFT: (0.0, 0.0), PIN: pin, **joints}, ((SHAFT, PIN), *links), fixed, **more)
 
 
+class RamLever(NamedTuple):
+    """A slotted lever whose end moves a ram: radius of the crank, distance of its pivot, and its length, in m."""
+
+    crank: float
+    frame: float
+    length: float
+
+
 class Mechanism(Record, ABC):
     """What every mechanism supplies. It serves forces, work and torque through these alone:
 
@@ -179,7 +194,7 @@ class Mechanism(Record, ABC):
     override: `crank_angles_at`, the inverse of `coordinate`; the connecting rod, the radial force; `sketch`, what is
     drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a
     coupler) they add as columns in OFFERS and key values in KEY_OFFERS. No other module tests for the class of a
-    mechanism.
+    mechanism, but for the references of `kurbel accuracy`, which have other formulas for each.
     """
 
     name: ClassVar[str]
@@ -189,6 +204,8 @@ class Mechanism(Record, ABC):
     """Whether a block on the crank pin and two guides may rub, as those of a Scotch yoke."""
     guided: ClassVar[bool] = True
     """Whether the side force N rests on a guide; otherwise it bends the piston rod."""
+    is_crank_drive: ClassVar[bool] = False
+    """Whether the crank pin moves the output itself, or through one connecting rod."""
     has_rod: ClassVar[bool] = False
     """Whether there is a connecting rod on the crank, with rod force S and side force N."""
     far_pin: ClassVar[str] = "crosshead_pin"
@@ -233,6 +250,11 @@ class Mechanism(Record, ABC):
 
     def guide_pair_factor(self, angle: CrankAngle) -> Number | None:
         """Return the force on each of two such guides over P, of the shape of the angle; None without them."""
+        return None
+
+    @property
+    def ram_lever(self) -> RamLever | None:
+        """The slotted lever whose end moves the ram without a link; None where there is none."""
         return None
 
     @abstractmethod

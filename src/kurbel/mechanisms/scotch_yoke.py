@@ -49,6 +49,7 @@ class ScotchYoke(Mechanism):
     pin_length: float | None = pin_length()
 
     name = "scotch-yoke"
+    is_crank_drive = True
     rubs = True
     known_across = True
     OFFERS = (*BLOCK_OFFERS, _N_PAIR)

@@ -134,13 +134,16 @@ class SliderCrank(Mechanism):
     )
     offset: float = field(
         "length",
-        "Offset of the stroke line from the shaft, positive toward the side of the outstroke",
+        "Offset of the stroke line from the shaft, positive toward the side of the crank pin on the outstroke; in an "
+        "engine away from the thrust side, so that the rod is straighter on the power stroke, and negative for a "
+        "piston pin set toward the thrust side",
         "e",
         default=0.0,
-        also=("pin_offset", "gudgeon_pin_offset", "wrist_pin_offset", "desaxe"),
+        also=("gudgeon_pin_offset", "wrist_pin_offset", "piston_pin_offset", "desaxe"),
     )
 
     name = "slider-crank"
+    is_crank_drive = True
     has_rod = True
     OFFERS = ROD_OFFERS
 

@@ -16,6 +16,7 @@ from kurbel.mechanisms import (
     SWING_OFFERS,
     SWING_VALUES,
     Mechanism,
+    RamLever,
     Sketch,
     Turning,
     on_circle,
@@ -157,6 +158,13 @@ class SlottedLever(Mechanism):
     def turns(self) -> bool:
         """Whether the output is the tilt of a lever that turns fully."""
         return self.rotates and not self.slides
+
+    @property
+    def ram_lever(self) -> RamLever | None:
+        """The lever, where its fork head moves the ram."""
+        if self.lever is None or math.isfinite(self.link):
+            return None
+        return RamLever(self.crank, self.frame, self.lever)
 
     @property
     def _end(self) -> float:

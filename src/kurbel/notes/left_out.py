@@ -1,12 +1,18 @@
 """What the results of a machine leave out, and why: for every topic its stages, each with the reason or ""."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from kurbel.arrays import Number
 from kurbel.machine import Cylinder, Machine
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.tables.tables import LeftOut
+
+if TYPE_CHECKING:
+    from kurbel.solver.chapters.bearings import Bearing
 
 _IN_EFFORT = ("gas force", "piston rod", "inertia", "weight", "friction")
 """Stages of a cylinder that its turning effort consists of."""
@@ -196,6 +202,12 @@ def bearing_left_out(
         yield LeftOut("pressure, p v", f"no {' and '.join(lacks)} given")
     if omega is None:
         yield LeftOut("rubbing speed", "no speed given")
+
+
+def film_left_out(bearing: Bearing) -> Iterator[LeftOut]:
+    """Yield the oil film of a bearing that `oil_film` describes but that has none."""
+    if bearing.film_obstacle:
+        yield LeftOut("oil film", bearing.film_obstacle)
 
 
 def bearings_left_out(case: Case) -> Iterator[LeftOut]:

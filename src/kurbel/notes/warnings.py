@@ -117,7 +117,10 @@ _SAME_ANGLE = 1e-6  # degrees
 
 
 def pin_warnings(machine: Machine) -> Iterator[str]:
-    """Yield warnings on cylinders at one place along the shaft that share no crank pin."""
+    """Yield warnings on cylinders at one place along the shaft that share no crank pin.
+
+    Not where the file gives the throws, as of split pins.
+    """
     placed = [
         (cylinder.axial_position, cylinder)
         for cylinder in machine.cylinders
@@ -127,7 +130,8 @@ def pin_warnings(machine: Machine) -> Iterator[str]:
         # the throws at φ = 0
         first = machine.cylinders[0]
         apart = abs(math.remainder(pin_lag(other, first) - pin_lag(one, first), 360.0))
-        if next_z - z <= _SAME_PLACE and apart > _SAME_ANGLE:
+        is_given = one.throw_angle is not None or other.throw_angle is not None
+        if next_z - z <= _SAME_PLACE and apart > _SAME_ANGLE and not is_given:
             yield (
                 f"{one.name} and {other.name} are at one place along the shaft, but their throws are "
                 f"{show(apart, 'angle')} apart: they share no crank pin. Two on one pin have crank positions that "
@@ -194,14 +198,15 @@ _GOOD = 0.85
 
 
 def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
-    """Yield the one warning on each trace of a cylinder, if any."""
+    """Yield the warnings on each trace of a cylinder, the strongest first."""
     for gas in forces.drive.gas:
         for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
             if pressure and pressure.traced:
-                from kurbel.traces.checks import doubt
+                from kurbel.traces.checks import doubts
 
-                text = doubt(pressure.trace, pressure.setting, pressure.each)
-                if text:
+                indicator = gas.piston.indicator
+                role = indicator.role if indicator else None
+                for text in doubts(pressure.trace, pressure.setting, pressure.each, role):
                     yield f"{gas.piston.name}, {end}: {text}"
 
 

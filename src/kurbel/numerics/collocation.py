@@ -197,6 +197,22 @@ def periodic(equation: Equation, pieces: Pieces) -> Periodic:
     return Periodic(equation, *solution, has_failed, height - least_height)
 
 
+def followed(equation: Equation, start: Periodic, changed: Flags) -> Periodic:
+    """Return the solutions of an equation that has changed a little for some machines; the others keep theirs.
+
+    equation: without a bound; start: the solutions before; changed: (machines,).
+    """
+    is_followed = changed & ~start.failed
+    if not is_followed.any():
+        return start
+    begun = _Solution(start.pieces, start.y)
+    with np.errstate(all="ignore"):
+        ahead, is_settled = _settled(equation, begun.of(is_followed), np.zeros(len(changed)))
+    solution = _joined([begun.of(~is_followed), ahead])
+    has_failed = np.where(is_followed, ~is_settled, start.failed)
+    return Periodic(equation, *solution, has_failed, start.short)
+
+
 class _Solution(NamedTuple):
     """What is known of the unknowns on a row of pieces, (m, k + 1, pieces)."""
 
@@ -366,8 +382,10 @@ class _System:
             is_running &= np.isfinite(size)
             step[..., ~is_running[machine]] = 0.0
 
-            # far above its bound y is moved as a whole by rounding, though by nothing relative to that height
-            near = np.maximum(1e-9 * _swing(pieces, y + step).max(axis=0), 1e-14 * highest)
+            # far above its bound, or where it hardly varies, y is moved as a whole by rounding, though by nothing
+            # relative to its size
+            largest = np.maximum(highest, _largest(pieces, np.abs(y + step)))
+            near = np.maximum(1e-9 * _swing(pieces, y + step).max(axis=0), 1e-14 * largest)
             # not beyond 9/10 of the way to the bound
             share = np.ones(pieces.count)
             if bounded is not None:

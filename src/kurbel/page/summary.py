@@ -15,7 +15,6 @@ from kurbel.machine import Machine
 from kurbel.machine.firing import firings
 from kurbel.machine.indicator import Chamber
 from kurbel.machine.several import intervals
-from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.pictures.picture import Fact, Facts, FactValue, Grid, Notice, SectionItem
 from kurbel.report.commands import subjects_of
@@ -161,7 +160,7 @@ def subtitle_of(machine: Machine) -> str:
     strokes = [
         mechanism.stroke for mechanism in mechanisms if mechanism.slides and not mechanism.turns
     ]
-    rods = [mechanism.rod for mechanism in mechanisms if isinstance(mechanism, SliderCrank)]
+    rods = [mechanism.rod_length for mechanism in mechanisms]  # infinite where there is none
     bores = []
     for cylinder in machine.cylinders:
         bores += [piston.bore for piston in cylinder.pistons]

@@ -36,10 +36,9 @@ from kurbel.pictures.picture import (
 )
 from kurbel.pictures.picture_source import PictureOptions
 from kurbel.pictures.pictures import PICTURES, PictureKind, pictures_if_any
-from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity
 from kurbel.report.commands import REPORTS, Command, subjects_of
-from kurbel.report.keys import every_place, meaning
+from kurbel.report.keys import meaning, places_of
 from kurbel.solver.case import Case
 from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
 from kurbel.tables.frame import Frame, Subject, provenance
@@ -104,7 +103,7 @@ def whole_report(
             continue
         else:
             is_forces = command.word == "forces"
-            items.append(ReportAnswers(_without_motion(report) if is_forces else report))
+            items.append(ReportAnswers(_without_motion(report, case) if is_forces else report))
             if any(part.columns for part in report.all_parts):
                 tables.append(OverAngle(report, command.title))
             for part in report.all_parts:
@@ -148,12 +147,13 @@ def _left_out(reasons: Mapping[tuple[str, str], Sequence[str]]) -> Iterator[Grid
         yield Grid("", ("Part", "Why", "Of"), tuple(rows))
 
 
-def _without_motion(report: Report) -> Report:
+def _without_motion(report: Report, case: Case) -> Report:
     """Return the report on forces without the key values that the section on motion has."""
     ids = set()
-    for quantity in every_quantity().all_key_values:
-        if quantity.commands[:1] == ("forces",):
-            ids.add(quantity.id)
+    for cylinder in case.cylinders:
+        for quantity in cylinder.lists.all_key_values:
+            if quantity.commands[:1] == ("forces",):
+                ids.add(quantity.id)
 
     def of_forces(part: Part) -> Part:
         key_values = (key_value for key_value in part.key_values if key_value.id in ids)
@@ -165,7 +165,7 @@ def _without_motion(report: Report) -> Report:
 def _input(case: Case, given: KeyTexts) -> Iterator[Grid]:
     """Yield the keys of the file with their meanings, and the results of a check of the machine."""
     if given:
-        places = every_place()
+        places = places_of(given)
         rows = tuple((path, value, meaning(path, places)) for path, value in given)
         yield Grid("Given", ("Key", "Value", "Meaning"), rows)
     for part in checked(case).shown_once:

@@ -10,9 +10,7 @@ import numpy as np
 
 from kurbel.arrays import ComplexArray
 from kurbel.crank_angle import CrankAngle
-from kurbel.mechanisms.scotch_yoke import ScotchYoke
-from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.mechanisms.slotted_lever import SlottedLever
+from kurbel.mechanisms import Mechanism, RamLever
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Words
 from kurbel.pictures.picture_source import AROUND, NO_NAME, Source, curve
 from kurbel.solver.state import State
@@ -29,19 +27,15 @@ def construction(source: Source) -> Iterator[Panel]:
     mechanism, omega = source.results.drive.mechanism, source.results.drive.omega
     for degrees in source.angles or (_USUAL,):
         angle, panels = CrankAngle.of(np.asarray(degrees)), dict[str, Panel]()
-        if isinstance(mechanism, SliderCrank) and math.isfinite(mechanism.rod):
+        lever = mechanism.ram_lever
+        if math.isfinite(mechanism.rod_length):
             panels["Displacement"] = _displacement(mechanism, angle)
             if omega:
                 panels["Velocity by components"] = _components(mechanism, angle, omega)
                 polar = _on_the_vertical(source, mechanism, angle, omega)
                 panels["Velocity on the vertical; dashed with an infinite rod"] = polar
-        elif (
-            isinstance(mechanism, SlottedLever)
-            and mechanism.slides
-            and math.isinf(mechanism.link)
-            and omega
-        ):
-            panels["Velocity"] = _of_lever(source, mechanism, angle, omega)
+        elif lever and omega:
+            panels["Velocity"] = _of_lever(source, lever, angle, omega)
         for title, panel in panels.items():
             yield panel._replace(title=f"{title}, {_at(degrees)}")
 
@@ -52,7 +46,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
     drive = source.results.drive
     mechanism = drive.mechanism
     by_rod = drive.rod is None and drive.pin_friction is None and not drive.yoke_rubs
-    if not (isinstance(mechanism, (SliderCrank, ScotchYoke)) and by_rod and source.having("T")):
+    if not (mechanism.is_crank_drive and by_rod and source.having("T")):
         return
 
     def tip(state: State) -> ComplexArray:
@@ -91,14 +85,14 @@ def _at(degrees: float) -> str:
     return f"φ = {round(degrees, 6):.9g}°"
 
 
-def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
+def _displacement(mechanism: Mechanism, angle: CrankAngle) -> Panel:
     """Return x as AG, cut off on the stroke line by an arc about the crosshead, and as CE up to the arc through A.
 
     F: foot of the vertical from C. D is the pin half a turn later, at the same angle on the return stroke: its way
     back from B, x_D, is the shorter one.
     """
     pin, head, sin, cos = _straight(mechanism, angle)
-    length = mechanism.rod
+    length = mechanism.rod_length
     way = float(mechanism.coordinate(angle))
     psi = math.atan2(sin, cos)
     arc = length * np.exp(1j * np.linspace(math.pi - psi, math.pi, 25))
@@ -140,7 +134,7 @@ def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
     )
 
 
-def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
+def _components(mechanism: Mechanism, angle: CrankAngle, omega: float) -> Panel:
     """Return v of the pin with its component v_s along the rod, which is that of c of the crosshead, too."""
     pin, head, sin, cos = _straight(mechanism, angle)
     pin, head = omega * pin, omega * head
@@ -164,7 +158,7 @@ def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Pane
 
 
 def _on_the_vertical(
-    source: Source, mechanism: SliderCrank, angle: CrankAngle, omega: float
+    source: Source, mechanism: Mechanism, angle: CrankAngle, omega: float
 ) -> Panel:
     """Return c as MF, the curve of c over the displacement, and the circle that it is with an infinite rod."""
     pin, _, sin, cos = _straight(mechanism, angle)
@@ -194,18 +188,18 @@ def _on_the_vertical(
     )
 
 
-def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega: float) -> Panel:
+def _of_lever(source: Source, lever: RamLever, angle: CrankAngle, omega: float) -> Panel:
     """Return c as GH, G under the lever's end and FH parallel to CG, and the curve of c over the place of the ram.
 
     c_1, c_2: largest velocities out and back. Of a lever that swings its end moves on the arc AB, while the crank
     turns through 2 α on the working stroke and 2 β on the return stroke, between the perpendiculars from M on the
     extreme positions.
     """
-    pivot = complex(-mechanism.frame * omega)
-    v = mechanism.crank * omega
+    pivot = complex(-lever.frame * omega)
+    v = lever.crank * omega
     pin = v * complex(angle.cos, angle.sin)
     along = (pin - pivot) / abs(pin - pivot)
-    length = omega * (mechanism.lever or 0.0)
+    length = omega * lever.length
     end = pivot + length * along
     foot = pivot - pivot.real * along.real * along
     under = complex(end.real)
@@ -226,8 +220,8 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
     # the extreme positions of a lever that swings
     extremes: list[Sequence[complex] | ComplexArray] = []
     angles: list[Curve] = []
-    if mechanism.crank < mechanism.frame:
-        tilt = math.asin(mechanism.crank / mechanism.frame)
+    if lever.crank < lever.frame:
+        tilt = math.asin(lever.crank / lever.frame)
         last = complex(math.cos(tilt), math.sin(tilt))
         foot_of_last = pivot - pivot.real * last.real * last
         swing = np.linspace(-tilt, tilt, 37)
@@ -267,13 +261,12 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
     )
 
 
-def _straight(mechanism: SliderCrank, angle: CrankAngle) -> tuple[complex, complex, float, float]:
-    """Return the points of crank pin and crosshead in m, with φ = 0 to the right, and sine and cosine of ψ."""
-    pin, (sin, cos) = (
-        mechanism.crank * complex(angle.cos, angle.sin),
-        map(float, mechanism.rod_angle(angle)),
-    )
-    return pin, complex(pin.real + mechanism.rod * cos, mechanism.offset), sin, cos
+def _straight(mechanism: Mechanism, angle: CrankAngle) -> tuple[complex, complex, float, float]:
+    """Return the places of crank pin and crosshead in m, with φ = 0 to the right, and sine and cosine of ψ."""
+    pin = mechanism.crank * complex(angle.cos, angle.sin)
+    sin, cos = map(float, mechanism.rod_angle(angle) or (0.0, 1.0))
+    head = complex(pin.real + mechanism.rod_length * cos, mechanism.offset)
+    return pin, head, sin, cos
 
 
 def _panel(

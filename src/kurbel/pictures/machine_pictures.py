@@ -1,21 +1,25 @@
 """The pictures of the whole machine and of its bearings: functions that yield their panels, listed in `pictures`."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
-from kurbel.machine.shaft_line import GROUNDED, ShaftLine
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
 from kurbel.pictures.picture_source import CurveFormula, Source, curve, level
-from kurbel.solver.chapters.bearings import BearingColumns
-from kurbel.solver.chapters.stress import PARTS
 from kurbel.solver.effort import Term
 from kurbel.solver.figures import AtAngles
-from kurbel.solver.flywheel import TurningState
 from kurbel.solver.state import State
+
+if TYPE_CHECKING:
+    from kurbel.machine.shaft_line import ShaftLine
+    from kurbel.solver.chapters.bearings import BearingColumns
+    from kurbel.solver.flywheel import TurningState
 
 _MOST_NUMBERED = 24
 _HIGHEST = 12
@@ -169,6 +173,8 @@ def _on_crank_1(source: Source, name: Words, torque: Array) -> CurveFormula:
 
 def throw_stress(source: Source) -> Iterator[Panel]:
     """Largest combined stress of each part of the crank throw over the cycle."""
+    from kurbel.solver.chapters.stress import PARTS
+
     names = {}
     for part, (_, words) in PARTS.items():
         names[f"sigma_{part}"] = words.removeprefix("the ")
@@ -254,6 +260,8 @@ def _along(line: ShaftLine) -> Array:
 
     What follows a gap begins at the mass where it leaves the line.
     """
+    from kurbel.machine.shaft_line import GROUNDED
+
     numbers = [0.0]
     for segment in line.segments:
         before, behind = segment.before, segment.behind

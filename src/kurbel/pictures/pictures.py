@@ -12,7 +12,6 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
 from kurbel.pictures.constructions import construction, polar_force
 from kurbel.pictures.machine_pictures import (
@@ -267,7 +266,7 @@ def _with_infinite_rod(source: Source, id: str, over: str) -> Panel:
     """Return a panel of a column; of x, c or b of a slider-crank with the same for an infinite rod."""
     panel = source.panel([id], over)
     drive = source.results.drive
-    if not isinstance(drive.mechanism, SliderCrank) or math.isinf(drive.mechanism.rod):
+    if math.isinf(drive.mechanism.rod_length):  # as where there is none
         return panel
     crank, omega = drive.mechanism.crank, drive.omega or 0.0
     infinite: dict[str, Callable[[State], Array]] = {

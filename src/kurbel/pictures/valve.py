@@ -1,14 +1,19 @@
 """The diagrams of a valve gear: those of Zeuner and of Reuleaux for each end, and the valve over the piston."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kurbel.arrays import ComplexArray
 from kurbel.crank_angle import CrankAngle, unit_vector
-from kurbel.machine.valve import Valve, ValveEnd
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Words
 from kurbel.pictures.picture_source import AROUND, NO_NAME, Source, curve, level
+
+if TYPE_CHECKING:
+    from kurbel.machine.valve import Valve, ValveEnd
 
 _BEYOND = 1.25
 """Radius of the crank circle of Zeuner's diagram over the eccentricity."""

@@ -245,7 +245,10 @@ class Look(NamedTuple):
 
     def sentence(self, text: str) -> str:
         """Return a sentence for people, its numbers as they are wanted."""
-        return self.number(self.text(re.sub(r"(?<=[a-z])\^2", "²", text)))
+        printed = re.sub(r"(?<=[a-z])\^2", "²", text)
+        if self.has("µ"):
+            printed = re.sub(r"(?<=\d )um\b", "µm", printed)
+        return self.number(self.text(printed))
 
     def number(self, text: str) -> str:
         """Return a text whose numbers have the decimal sign that is wanted; in HTML and LaTeX see `fine`."""
@@ -303,7 +306,8 @@ class Look(NamedTuple):
         >>> Look().unit("m/s^2"), Look().unit("N", 6), Look(encoding="ascii").unit("N", 6)
         ('m/s²', '10⁶ N', '10^6 N')
         """
-        printed = "°" if unit == "deg" else unit.replace("^2", "²").replace("^3", "³")
+        signs = {"deg": "°", "um": "µm"}
+        printed = signs.get(unit, unit.replace("^2", "²").replace("^3", "³"))
         if not self.has(printed):
             printed = unit
         return f"{self._power(exponent)} {printed}".strip() if exponent else printed

@@ -6,12 +6,19 @@ from itertools import chain
 from kurbel.notes.left_out import (
     bearing_left_out,
     bearings_left_out,
+    film_left_out,
 )
 from kurbel.notes.warnings import as_far_as_solved, bearing_warnings, of_machine, rods_on_pin
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.bearings import Bearing
 from kurbel.tables.frame import Functions, Subject
 from kurbel.tables.tables import together
+
+
+def _film_warnings(case: Case) -> Iterator[str]:
+    from kurbel.notes.oil_film import film_warnings
+
+    return film_warnings(case)
 
 
 def _loaded(case: Case) -> list[Subject]:
@@ -22,13 +29,17 @@ def _loaded(case: Case) -> list[Subject]:
             part.name,
             part,
             part.at,
-            left_out=bearing_left_out(*part.size, part.omega),
+            left_out=chain(bearing_left_out(*part.size, part.omega), film_left_out(part)),
             of=part.cylinders[0].drive.name if part.of_rod else "",
             where="" if part.of_rod else _next_to(part),
         )
         for part in case.bearings.parts
     ]
-    warnings = chain(of_machine(case), as_far_as_solved(bearing_warnings(case), "bearings"))
+    warnings = chain(
+        of_machine(case),
+        as_far_as_solved(bearing_warnings(case), "bearings"),
+        _film_warnings(case) if case.machine.oil_film else (),
+    )
     return [
         *parts,
         Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True),
@@ -50,6 +61,12 @@ def _bearing_notes(case: Case) -> Iterator[str]:
         "either side of the load; crank pins and journals rotate with the throw, crosshead pins and main shells do "
         "not."
     )
+    if machine.oil_film:
+        yield (
+            "Oil film by the mobility method: rigid and aligned surfaces, constant viscosity, a clearance that is "
+            "always full of oil. Films of real bearings are thinner; compare designs by it. ε_h from the rod's line, "
+            "of a main bearing from the stroke line of cylinder 1."
+        )
     if len(machine.cylinders) > 1:
         yield "φ is the angle of crank 1."
     if line and len(line.throws) > 1:

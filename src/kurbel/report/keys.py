@@ -1,10 +1,10 @@
 """The keys of the machine file, from their declarations: a line each, or one in full."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
 from typing import NamedTuple
 
-from kurbel.declared.forms.structures import Inline, Keyed, Listing, RecordForm, records
+from kurbel.declared.forms.structures import Inline, Keyed, Listing, RecordForm, Variant, records
 from kurbel.declared.forms.values import Form
 from kurbel.declared.keys import Key, absent_text
 from kurbel.declared.reading import text_in_one_line
@@ -35,9 +35,9 @@ class ListedKey(NamedTuple):
         key = self.key
         item = key.form.item if isinstance(key.form, Listing) else None
         if isinstance(item, RecordForm):
-            inner = _of_record(item, self.path)
+            inner = _of_record(item, self.path, _is_any)
         else:
-            inner = _below(key.form, self.path)
+            inner = _below(key.form, self.path, _is_any)
         name = self.path.rpartition(".")[2]
         below = dict.fromkeys(listed.path.removeprefix(f"{self.path}.") for listed in inner)
         texts = {
@@ -60,15 +60,32 @@ class ListedKey(NamedTuple):
         return self.key.written.replace("`", "").replace("\t", "\\t")
 
 
-def every_place() -> dict[str, list[ListedKey]]:
+Places = dict[str, list[ListedKey]]
+"""Keys by their dotted paths."""
+
+
+def _is_any(word: str) -> bool:
+    return True
+
+
+def every_place(is_wanted: Callable[[str], bool] = _is_any) -> Places:
     """Return every key of a machine file by its dotted path, once for each mechanism that has it.
 
-    Those of a cylinder are at the top.
+    Those of a cylinder are at the top. is_wanted: takes a key, or the word of a mechanism, and returns whether what is
+    below it is listed, too.
     """
-    places: dict[str, list[ListedKey]] = {}
-    for listed in _of_record(RecordForm(Machine), ""):
+    places: Places = {}
+    for listed in _of_record(RecordForm(Machine), "", is_wanted):
         places.setdefault(listed.path, []).append(listed)
     return places
+
+
+def places_of(texts: Iterable[tuple[str, str]]) -> Places:
+    """Return the keys that a file may have below those that it has; texts: the paths of its keys, and the values."""
+    words = set[str]()
+    for path, value in texts:
+        words.update(_steps(path), [value])
+    return every_place(words.__contains__)
 
 
 def described(path: str) -> list[tuple[str, str]]:
@@ -115,7 +132,7 @@ def _hint(name: str, listed_keys: Iterable[str]) -> str:
     return f"; did you mean {' or '.join(map(repr, similar))}?"
 
 
-def meaning(path: str, places: dict[str, list[ListedKey]]) -> str:
+def meaning(path: str, places: Places) -> str:
     """Return what the key at the end of a path means, as the file has it; '' if it is not known."""
     steps = _steps(path)
     for above in range(len(steps)):
@@ -136,31 +153,41 @@ def _steps(path: str) -> list[str]:
     ]
 
 
-def _of_record(record: RecordForm, path: str, beside: str = "") -> Iterator[ListedKey]:
-    """Yield the keys of a record at a path, and those below them."""
+def _of_record(
+    record: RecordForm, path: str, is_wanted: Callable[[str], bool], beside: str = ""
+) -> Iterator[ListedKey]:
+    """Yield the keys of a record at a path, and those below the wanted ones."""
     for name, key in record.keys.items():
-        is_inline = isinstance(key.form, Inline)
-        if not is_inline:
+        form = key.form
+        if not isinstance(form, Inline):
             key_path = f"{path}.{name}" if path else name
             others = tuple(
                 other for other, other_key in record.keys.items() if other_key.instead == name
             )
             yield ListedKey(key_path, key, absent_text(record.keys, name), others, beside)
-            yield from _below(key.form, key_path)
-        if key.form.inline:
-            for word, inner in records(key.form, name):
-                yield from _of_record(inner, path, "" if is_inline else word)
+            if is_wanted(name):
+                yield from _below(form, key_path, is_wanted)
+        if isinstance(form, Variant):
+            chosen = [word for word in form.cases if is_wanted(word)] or [form.default]
+            for word in chosen:
+                yield from _of_record(form.cases[word], path, is_wanted, f"{name}: {word}")
+        elif form.inline:
+            for _, inner in records(form, name):
+                yield from _of_record(inner, path, is_wanted)
 
 
-def _below(form: Form, path: str) -> Iterator[ListedKey]:
+def _below(form: Form, path: str, is_wanted: Callable[[str], bool]) -> Iterator[ListedKey]:
     """Yield the keys below a key of this form."""
     if isinstance(form, RecordForm):
         if not form.inline_too:
-            yield from _of_record(form, path)
+            yield from _of_record(form, path, is_wanted)
         return
     if isinstance(form, Keyed):
         for name, key in form.single.items():
             yield ListedKey(f"{path}.{name}", key, key.absent)
     if not form.inline:
         for name, inner in form.parts:
-            yield from _below(inner, f"{path}.{name}" if name else path)
+            if not name:
+                yield from _below(inner, path, is_wanted)
+            elif is_wanted(name):
+                yield from _below(inner, f"{path}.{name}", is_wanted)

@@ -81,13 +81,10 @@ class AtAngles:
 
     def __init_subclass__(cls) -> None:
         # a column of several parts is an attribute for each of them
-        for row in (
-            row
-            for item in list(vars(cls).values())
-            if isinstance(item, ForEach)
-            for row in item.rows
-        ):
-            setattr(cls, row.quantity.id, property(row.of, doc=row.quantity.text))
+        for item in list(vars(cls).values()):
+            if isinstance(item, ForEach):
+                for row in item.rows:
+                    setattr(cls, row.quantity.id, property(row.of, doc=row.quantity.text))
 
     @property
     def rows(self) -> Mapping[str, QuantityRow]:
@@ -108,21 +105,25 @@ def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mappin
     if (state, offers) in _COLUMN_ROWS:
         return _COLUMN_ROWS[state, offers]
     rows = list[QuantityRow]()
-    for owner in (one for one in reversed(state.__mro__) if issubclass(one, AtAngles)):
+    for owner in reversed(state.__mro__):
+        if not issubclass(owner, AtAngles):
+            continue
         for item in vars(owner).values():
-            for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
-                own = row.quantity.commands == ITS_OWN
-                rows.append(
-                    row._replace(quantity=row.quantity._replace(commands=owner.commands))
-                    if own
-                    else row
-                )
-    rows += [QuantityRow(offer.quantity, offer.of, offer.unless) for offer in offers]
-    over_phi = dict.fromkeys(word for row in rows for word in row.quantity.commands)
-    every = _in_order(
-        [QuantityRow(PHI._replace(commands=tuple(over_phi)), lambda one: one.phi), *rows]
-    )
-    return _COLUMN_ROWS.setdefault((state, offers), every)
+            if isinstance(item, (Computed, ForEach)):
+                rows += (_with_commands(row, owner.commands) for row in item.rows)
+    rows += (QuantityRow(offer.quantity, offer.of, offer.unless) for offer in offers)
+
+    # the angle is a column of every command that has another
+    commands = dict.fromkeys(word for row in rows for word in row.quantity.commands)
+    phi = QuantityRow(PHI._replace(commands=tuple(commands)), lambda state: state.phi)
+    return _COLUMN_ROWS.setdefault((state, offers), _in_order([phi, *rows]))
+
+
+def _with_commands(row: QuantityRow, commands: tuple[str, ...]) -> QuantityRow:
+    """Return a row with the commands of its class, if it has none of its own."""
+    if row.quantity.commands != ITS_OWN:
+        return row
+    return row._replace(quantity=row.quantity._replace(commands=commands))
 
 
 def _in_order(rows: Iterable[QuantityRow]) -> dict[str, QuantityRow]:
@@ -130,22 +131,20 @@ def _in_order(rows: Iterable[QuantityRow]) -> dict[str, QuantityRow]:
 
     Several `after` the same one keep their order; one without a heading has that of the one before it.
     """
-    found: dict[str, QuantityRow] = {}
+    by_id: dict[str, QuantityRow] = {}
     for row in rows:
-        found.setdefault(row.quantity.id, row)
-
-    def follows(quantity: Quantity) -> bool:
-        return quantity.after in found
-
-    ordered = [row.quantity for row in found.values() if not follows(row.quantity)]
-    for quantity in (row.quantity for row in found.values() if follows(row.quantity)):
-        place = [other.id for other in ordered].index(quantity.after) + 1
-        while place < len(ordered) and ordered[place].after == quantity.after:
-            place += 1
-        ordered.insert(
-            place, quantity._replace(heading=quantity.heading or ordered[place - 1].heading)
-        )
-    return {quantity.id: found[quantity.id]._replace(quantity=quantity) for quantity in ordered}
+        by_id.setdefault(row.quantity.id, row)
+    quantities = [row.quantity for row in by_id.values()]
+    ordered = [quantity for quantity in quantities if quantity.after not in by_id]
+    for quantity in quantities:
+        if quantity.after not in by_id:
+            continue
+        index = [other.id for other in ordered].index(quantity.after) + 1
+        while index < len(ordered) and ordered[index].after == quantity.after:
+            index += 1
+        heading = quantity.heading or ordered[index - 1].heading
+        ordered.insert(index, quantity._replace(heading=heading))
+    return {quantity.id: by_id[quantity.id]._replace(quantity=quantity) for quantity in ordered}
 
 
 # key values
@@ -164,11 +163,11 @@ class Rows(NamedTuple):
 
     def changed(self, change: Callable[[Quantity], Quantity]) -> Rows:
         """Return the rows with other quantities."""
-        found = (
-            {id: row._replace(quantity=change(row.quantity)) for id, row in rows.items()}
-            for rows in self
-        )
-        return Rows(*found)
+
+        def changed_rows(rows: Mapping[str, QuantityRow]) -> dict[str, QuantityRow]:
+            return {id: row._replace(quantity=change(row.quantity)) for id, row in rows.items()}
+
+        return Rows(*map(changed_rows, self))
 
 
 Door = Callable[[], "type[Results]"]
@@ -198,14 +197,15 @@ class PartResults(Computed[V]):
         """Yield the rows of the part for the results that it is a part of; None where they have no such part."""
 
         def of_part(function: Formula, results: object) -> Any:
-            found = self.__get__(results)
-            return None if found is None else function(found)
+            part = self.__get__(results)
+            return None if part is None else function(part)
 
-        for quantity, of, unless, repeats in rows:
-            adds_nothing = self.unless or (unless and partial(of_part, unless))
-            yield QuantityRow(
-                quantity, partial(of_part, of), adds_nothing, repeats and partial(of_part, repeats)
-            )
+        for row in rows:
+            unless = self.unless
+            if unless is None and row.unless:
+                unless = partial(of_part, row.unless)
+            repeats = row.repeats and partial(of_part, row.repeats)
+            yield QuantityRow(row.quantity, partial(of_part, row.of), unless, repeats)
 
 
 def part(
@@ -225,17 +225,17 @@ class ExtremesOfColumns:
     """The place of the extremes of columns among the key values of a class; without it they are printed last."""
 
     ENDS: ClassVar[dict[str, Callable[[Extremes], Extreme]]] = {
-        "max": lambda both: both.largest,
-        "min": lambda both: both.smallest,
-        "peak": lambda both: both.peak,
+        "max": lambda extremes: extremes.largest,
+        "min": lambda extremes: extremes.smallest,
+        "peak": lambda extremes: extremes.peak,
     }
 
     def rows(self, columns: Iterable[Quantity]) -> Iterator[QuantityRow]:
         """Yield the key values that are extremes of columns, of results that have `extremes_of(id)`."""
 
         def extreme(column: str, end: str, results: Any) -> Extreme | None:
-            found = results.extremes_of(column)
-            return None if found is None else self.ENDS[end](found)
+            extremes = results.extremes_of(column)
+            return None if extremes is None else self.ENDS[end](extremes)
 
         def repeats(column: str, end: str, results: Any) -> bool:
             # the largest magnitude is that of the largest or the smallest value
@@ -243,9 +243,10 @@ class ExtremesOfColumns:
 
         for column in columns:
             for end in self.ENDS if column.peak else ("max", "min"):
-                names = column.id, end
                 yield QuantityRow(
-                    column.extreme(end), partial(extreme, *names), repeats=partial(repeats, *names)
+                    column.extreme(end),
+                    partial(extreme, column.id, end),
+                    repeats=partial(repeats, column.id, end),
                 )
 
 
@@ -309,10 +310,12 @@ class Results(NotebookView):
 
     def key_values(self) -> dict[str, Figure]:
         """Return every key value that there is by its id, in the order in which they are printed."""
-        found = ((row.quantity, row.of(self)) for row in self.rows.key_values.values())
-        return {
-            quantity.id: _figure(quantity, value) for quantity, value in found if value is not None
-        }
+        figures = {}
+        for row in self.rows.key_values.values():
+            value = row.of(self)
+            if value is not None:
+                figures[row.quantity.id] = _figure(row.quantity, value)
+        return figures
 
     def columns(self, degrees: object, *names: str) -> dict[str, Array]:
         """Return φ and these columns (n,), or all that there are, in SI by id, at crank angles (n,) in degrees.

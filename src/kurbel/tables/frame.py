@@ -76,7 +76,10 @@ class Subject(NamedTuple):
     @property
     def lists(self) -> Lists:
         """The quantities that it can have."""
-        return self.results.lists if self.results else every_quantity()
+        if self.results:
+            return self.results.lists
+        # columns alone are those of a shaft segment
+        return every_quantity() if self.at else Lists((), ())
 
     def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""

@@ -8,7 +8,7 @@ from kurbel.declared.forms.figures import MACHINE, scoped
 from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
-from kurbel.quantities import every_quantity
+from kurbel.quantities import every_quantity, key_values_of
 from kurbel.quantity import Quantity, ambiguity, called, in_sentences
 
 _LONGEST = 4
@@ -44,10 +44,14 @@ class Choice(NamedTuple):
         return self.scope in (owner.name, owner.of) or (self.scope == MACHINE and owner.whole)
 
 
-def split_names(text: str, is_name: Callable[[str], bool]) -> Iterator[str]:
+def split_names(
+    text: str, is_name: Callable[[str], bool], is_id: Callable[[str], bool]
+) -> Iterator[str]:
     """Yield the names in a text, separated by commas or blanks; a name may have commas or blanks itself.
 
-    >>> list(split_names("T_max, P_b,max c_max", {"T_max", "P_b,max", "c_max"}.__contains__))
+    Words that are ids, as `p_max` and `m`, are those, whatever symbol they might be together.
+
+    >>> list(split_names("T_max, P_b,max c_max", {"P_b,max"}.__contains__, {"T_max", "c_max"}.__contains__))
     ['T_max', 'P_b,max', 'c_max']
     """
     words = list(re.finditer(r"[^,\s]+", text))
@@ -56,7 +60,8 @@ def split_names(text: str, is_name: Callable[[str], bool]) -> Iterator[str]:
         # the longest run of words that is a name; a word that is none is yielded as it is
         last = first
         for end in range(min(first + _LONGEST, len(words)) - 1, first, -1):
-            if is_name(text[words[first].start() : words[end].end()]):
+            are_ids = all(is_id(word.group()) for word in words[first : end + 1])
+            if not are_ids and is_name(text[words[first].start() : words[end].end()]):
                 last = end
                 break
         yield text[words[first].start() : words[last].end()]
@@ -69,7 +74,9 @@ def choices_in(text: str, command: str, owners: Sequence[Owner]) -> list[Choice]
     owners: what the command has results of; without any a name has no scope. Raises UsageError for a name that is none,
     and for a scope that is not there.
     """
-    declared = every_quantity().key_values(command)
+    # names that are ids of the command's own chapters open no others
+    words = re.findall(r"[^,\s]+", text)
+    declared = key_values_of(command, [scoped(word)[1] for word in words])
     scopes = _scopes(owners)
 
     def is_name(name: str) -> bool:
@@ -78,7 +85,11 @@ def choices_in(text: str, command: str, owners: Sequence[Owner]) -> list[Choice]
             scope in scopes and bool(called(id, declared.values()))
         )
 
-    choices = [_choice(name, command, declared, scopes) for name in split_names(text, is_name)]
+    def is_id(name: str) -> bool:
+        return name in declared or scoped(name)[1] in declared
+
+    names = split_names(text, is_name, is_id)
+    choices = [_choice(name, command, declared, scopes) for name in names]
     if not choices:
         raise UsageError("--key-values names no key value; leave the names out for all of them")
     return list(dict.fromkeys(choices))

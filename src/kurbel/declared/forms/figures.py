@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.numerals import NUMBER, familiar, keyboard_text
@@ -37,8 +37,7 @@ class Bound(float):
         return bound
 
 
-@dataclass(frozen=True, eq=False)
-class Expected:
+class Expected(NamedTuple):
     """The smallest and the largest value that meet an expectation, in the base; unit, text and name as written."""
 
     low: float
@@ -107,7 +106,7 @@ class Figures(Form):
             # its figure
             figure = self.figure_of(quantities[ids[0]]).read(reading, text, (*path, name))
             if isinstance(figure, Expected):
-                figure = replace(figure, name=name)
+                figure = figure._replace(name=name)
             elif isinstance(figure, float):
                 figure = Bound(figure, written_unit(str(text)), name)
             figures[id] = figure

@@ -5,7 +5,6 @@ then `Maker` (`making`) makes records of these.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NoReturn, Union
 
@@ -221,7 +220,6 @@ class Inline(RecordForm):
         self.inline = (self,)
 
 
-@dataclass(eq=False)
 class ReadMapping:
     """A mapping after the first pass: all that its record is made from.
 
@@ -229,11 +227,14 @@ class ReadMapping:
     record, after the second pass.
     """
 
-    form: RecordForm
-    mapping: Tree
-    path: Path
-    values: dict[str, object]
-    made: Any = None
+    def __init__(
+        self, form: RecordForm, mapping: Tree, path: Path, values: dict[str, object]
+    ) -> None:
+        self.form = form
+        self.mapping = mapping
+        self.path = path
+        self.values = values
+        self.made: Any = None
 
 
 def no_mapping(form: Form, value: Node) -> NoReturn:

@@ -18,7 +18,7 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,12 +34,15 @@ from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved
 from kurbel.quantity import ValuesById, value, values_for
 from kurbel.solver.effort import position
-from kurbel.solver.figures import AtAngles, Results, result
+from kurbel.solver.figures import AtAngles, Results, part, result
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 from kurbel.solver.throw_loads import pin_load, real_parts, resampled, state_at
 from kurbel.solver.vector import Force
+
+if TYPE_CHECKING:
+    from kurbel.solver.chapters.oil_film import FilmAtAngles, OilFilm
 
 HALF_CONTACT = 60.0
 """Degrees to either side of a load over which pin and shell are taken to touch."""
@@ -63,6 +66,12 @@ Frames = dict[str, ComplexArray]
 """A load in N in each of its frames."""
 
 
+def _oil_film() -> type[OilFilm]:
+    from kurbel.solver.chapters.oil_film import OilFilm
+
+    return OilFilm
+
+
 class BearingColumns(AtAngles):
     """The load of one bearing at crank angles φ (n,) in degrees; frames: (n,) each."""
 
@@ -82,9 +91,37 @@ class BearingColumns(AtAngles):
         of=lambda columns, frame: columns.direction(frame),
     )
 
-    def __init__(self, phi: Array, frames: Frames, largest: float) -> None:
+    eccentricity = value(
+        "e_r",
+        "ratio",
+        "Eccentricity of the journal over the radial clearance",
+        lambda columns: columns.film and columns.film.eccentricity,
+    )
+    film_thickness = value(
+        "h_0",
+        "film",
+        "Thickness of the oil film where it is thinnest",
+        lambda columns: columns.film and columns.film.thickness,
+    )
+    film_direction = value(
+        "ε_h",
+        "angle",
+        "Direction of the thinnest film, seen from the shell: from the line of the rod, or of a main bearing from "
+        "the stroke line of cylinder 1",
+        lambda columns: columns.film and columns.film.direction,
+    )
+    film_pressure = value(
+        "p_F",
+        "pressure",
+        "Largest pressure in the oil film",
+        lambda columns: columns.film and columns.film.pressure,
+    )
+
+    def __init__(
+        self, phi: Array, frames: Frames, largest: float, film: FilmAtAngles | None
+    ) -> None:
         self.phi, self.frames, self.size = phi, frames, np.abs(next(iter(frames.values())))
-        self.largest = largest
+        self.largest, self.film = largest, film
 
     def direction(self, frame: str) -> Array | None:
         """Return the direction of the load in degrees in a frame, None in one in which it is not known.
@@ -101,7 +138,7 @@ class BearingColumns(AtAngles):
 class Bearing(Results):
     """A pin or a main bearing at the angles of crank 1. Attributes are named by the ids of the key values, in SI.
 
-    name: as it is printed; cylinders: those that load it; size: diameter and length in m, None where they are not
+    name: as it is printed; key: in `oil_film`; cylinders: those that load it; size: diameter and length in m, None where they are not
     given; journal, shell: the frames in which its two surfaces are at rest; contact: where they touch, in degrees from
     the direction of the load: a load to the right presses the left side of a crank pin (180°), but the right side of
     the shell of a main bearing (0°); of_rod: whether a rod turns on it. Of many machines all key values are arrays
@@ -131,16 +168,43 @@ class Bearing(Results):
     rubbing_speed_mean = value("v_L,m", "velocity", "Mean sliding speed of the surfaces")
     pressure_velocity = value("k_L", "pressure_velocity", "Mean pressure times mean speed, p v")
     work_rubbing = value(
-        "A_f,L", "energy", "Friction work per cycle", lambda one: one.friction_work()
+        "A_f,L", "energy", "Friction work per cycle", lambda bearing: bearing.friction_work()
     )
 
+    @part(_oil_film, there=lambda bearing: bearing.oil is not None)
+    def film(self) -> OilFilm | None:
+        """Its oil film; None where it has none, or something that it needs is not given."""
+        films, omega = self.machine.oil_film, self.omega
+        diameter, length = self.size
+        if films is None or self.oil is None or self._film_lacks:
+            return None
+        if omega is None or diameter is None or length is None:
+            return None
+        shape = _oil_film().shape_of(films, self.key, diameter, length)
+        pieces, _, loads = self._cycle
+        turning = pieces.carried(self._turning(), self._common)
+        pressed = self._pressing(loads[1])
+        return _oil_film()(shape, pieces, pressed, turning, omega, self.count)
+
     def __init__(
-        self, name: str, cylinders: Sequence[CylinderForces], size: Size, surfaces: tuple[str, str]
+        self,
+        name: str,
+        key: str,
+        cylinders: Sequence[CylinderForces],
+        size: Size,
+        surfaces: tuple[str, str],
     ) -> None:
-        self.name, self.cylinders, self.size = name, tuple(cylinders), size
+        self.name, self.key, self.cylinders = name, key, tuple(cylinders)
         self.journal, self.shell = surfaces
         drive = cylinders[0].drive
         self.machine, self.count, self.omega = drive.machine, drive.count, drive.omega
+        films = self.machine.oil_film
+        self.oil = films.bearings.get(key) if films else None
+        diameter, length = size
+        if self.oil:
+            diameter = self.oil.diameter if diameter is None else diameter
+            length = self.oil.length if length is None else length
+        self.size = diameter, length
         cycle = 360.0 * self.machine.revolutions
         self._common = common(
             [(cylinder.pieces, position(cylinder)) for cylinder in cylinders], cycle
@@ -154,6 +218,10 @@ class Bearing(Results):
     def _samples(self) -> Sequence[ComplexArray]:
         """Return the load in the frames of both surfaces on the common pieces, (nodes, pieces) each."""
 
+    def _turning(self) -> Array:
+        """Return the speed at which the journal turns in the shell on the common pieces, as a multiple of ω."""
+        return np.ones_like(self._common.degrees)
+
     def turning(self) -> tuple[Extreme, Number]:
         """Return the largest and the mean speed at which the surfaces turn on each other, as a multiple of ω."""
         return Extreme(1.0, self._result(np.zeros(self.count or 1))), 1.0
@@ -164,7 +232,31 @@ class Bearing(Results):
 
     def _columns(self, phi: Array, within: Array) -> BearingColumns:
         largest = float(np.abs(self._samples()[0]).max())
-        return BearingColumns(phi, self._frames(phi, within), largest)
+        frames = self._frames(phi, within)
+        pressed = self._pressing(frames[self.shell])
+        film = self.film.at_angles(phi, pressed) if self.film else None
+        return BearingColumns(phi, frames, largest, film)
+
+    def _pressing(self, load: ComplexArray) -> ComplexArray:
+        """Return a load seen from the shell, turned to where it presses pin and shell together."""
+        return load * math.cos(math.radians(self.contact))
+
+    @cached_property
+    def _film_lacks(self) -> str:
+        """Why there is no oil film, as far as that does not depend on its orbit, or an empty text."""
+        if self.omega is None:
+            return "no speed given"
+        if self.count is None and self.omega == 0:
+            return "not defined at rest"
+        missing = [name for name, size in zip(("diameter", "length"), self.size) if size is None]
+        return f"no {' and '.join(missing)} given" if missing else ""
+
+    @property
+    def film_obstacle(self) -> str:
+        """Why the only machine has no film in a bearing that `oil_film` describes, or an empty text."""
+        if self.film is None or self.film.repeats_itself:
+            return self._film_lacks
+        return "the load turns with the oil or never leaves its side; no film repeats"
 
     @cached_property
     def _cycle(self) -> tuple[Pieces, Array, ComplexArray]:
@@ -222,7 +314,8 @@ class RodPin(Bearing):
     of_rod = True
 
     def __init__(self, name: str, own: CylinderForces, size: Size, pin: str) -> None:
-        super().__init__(name, (own,), size, ("throw" if pin == "crank_pin" else "engine", "rod"))
+        surfaces = ("throw" if pin == "crank_pin" else "engine", "rod")
+        super().__init__(name, pin, (own,), size, surfaces)
         self._own, self._pin, self._bank = own, pin, unit_vector(own.drive.cylinder.bank_angle)
 
     def _seen(self, state: State, bank: Any) -> Frames:
@@ -245,14 +338,20 @@ class RodPin(Bearing):
         frames = self._seen(self._own.samples, self._own.pieces.of(self._bank))
         return [*resampled(self._common, self._own, frames[self.journal], frames[self.shell])]
 
-    def turning(self) -> tuple[Extreme, Number]:
+    def _turning(self) -> Array:
         """The rod turns on the crank pin with 1 + dψ/dφ, on the crosshead pin with dψ/dφ; see `Bearing`."""
         state, pieces = self._own.samples, self._common
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
-        rate = resampled(pieces, self._own, 1 + slope if self._pin == "crank_pin" else slope).real
-        fastest = pieces.extremes(rate).each(self._result)[0].peak
-        return fastest, self._result(pieces.mean(np.abs(rate[0])))
+        rate = 1 + slope if self._pin == "crank_pin" else slope
+        return resampled(pieces, self._own, rate).real[0]
+
+    def turning(self) -> tuple[Extreme, Number]:
+        """Of a rod that swings; see `Bearing`."""
+        pieces = self._common
+        rate = self._turning()
+        fastest = pieces.extremes(rate[None]).each(self._result)[0].peak
+        return fastest, self._result(pieces.mean(np.abs(rate)))
 
     def friction_work(self) -> Number | None:
         """That of `kurbel forces`, over the cycle of the machine; see `Bearing`."""
@@ -282,7 +381,8 @@ class MainBearing(Bearing):
     ) -> None:
         throws = [throw for throw in line.throws if number in (throw.A, throw.B)]
         self._members = {index: every[index] for throw in throws for index in throw.cylinders}
-        super().__init__(name, (*self._members.values(),), size, ("throw", "engine"))
+        cylinders = tuple(self._members.values())
+        super().__init__(name, "journals", cylinders, size, ("throw", "engine"))
         self._number, self._line = number, line
 
     def _force(

@@ -61,19 +61,19 @@ class CouplingTorque(Results):
         "M_K,max",
         "torque",
         "Largest torque in the elastic coupling",
-        lambda one: one.torque_extremes.largest,
+        lambda coupling: coupling.torque_extremes.largest,
     )
     M_coupling_min = value(
         "M_K,min",
         "torque",
         "Smallest torque in the elastic coupling",
-        lambda one: one.torque_extremes.smallest,
+        lambda coupling: coupling.torque_extremes.smallest,
     )
     amplification = value(
         "V",
         "ratio",
         "Torque variation in the coupling, relative to that in a rigid coupling",
-        lambda one: one.amplified(),
+        lambda coupling: coupling.amplified(),
     )
 
     @cached_property

@@ -187,7 +187,7 @@ class MachineOrders(Results):
         "M_m",
         "torque",
         "Mean torque of the turning effort, equal to the resistance",
-        lambda one: one.effort.result(one.effort.mean),
+        lambda harmonics: harmonics.effort.result(harmonics.effort.mean),
     )
 
     @key_value("Σ|M_ν|²/2", "ratio", plain="sum M_nu2/2")
