@@ -154,10 +154,8 @@ def part_name(report: Report, part: Part, look: Look) -> str:
     if part is not report.whole and report.group == "ratios":
         ratio = str(whole_if_integral(float(part.name))).replace("inf", "∞")
         return look.text(f"L/R = {look.number(ratio)}")
-    whole = report.whole
-    has_totals = whole is not None and not whole.columns
-    is_only_cylinder = len(report.parts) == 1 and len(report.cylinders) == 1
-    if len(report.all_parts) < 2 or (part is not whole and is_only_cylinder and has_totals):
+    is_only_cylinder = report.is_of_one_cylinder and part is not report.whole
+    if is_only_cylinder or len(report.all_parts) < 2:
         return ""
     return look.text(str(part.name))
 

@@ -97,10 +97,6 @@ def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
     cylinders = _with_forces(case)
-    has_key_values_of_one_cylinder = len(case.cylinders) == 1 and not frame.prose
-    if has_key_values_of_one_cylinder and not frame.names:
-        # rows of CSV without the name of the cylinder, which scripts read
-        cylinders = cylinders[:1]
     if frame.prose and cylinders:
         from kurbel.notes.warnings import by_cylinder
 
