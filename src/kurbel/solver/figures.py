@@ -326,8 +326,8 @@ class Results(NotebookView):
         names: ids or printed symbols. Raises UsageError for angles that are no numbers and for what is no column here.
         """
         angles = np.atleast_1d(crank_angles(degrees))
-        state, every = self.at(angles), self.rows.columns
-        known = {id: row for id, row in every.items() if self.command in row.quantity.commands}
+        state = self.at(angles)
+        known = self._own_columns
         rows = [_only(name, known, "column") for name in names] if names else known.values()
         found: dict[str, Array] = {"phi": angles}
         for row in rows:
@@ -337,6 +337,12 @@ class Results(NotebookView):
             elif names:
                 raise UsageError(f"this machine has no {row.quantity.id}: {row.quantity.text}")
         return found
+
+    @cached_property
+    def _own_columns(self) -> dict[str, QuantityRow]:
+        """The rows of the columns of this command, by id."""
+        columns = self.rows.columns
+        return {id: row for id, row in columns.items() if self.command in row.quantity.commands}
 
     def at(self, degrees: object, within: Array | None = None) -> Any:
         """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
@@ -451,7 +457,9 @@ def crank_angles(degrees: object) -> Array:
 
 
 def _only(name: str, known: Mapping[str, QuantityRow], what: str) -> QuantityRow:
-    """Return the one row that a name means; raises UsageError for none and for several."""
+    """Return the one row that a name means, its id first; raises UsageError for none and for several."""
+    if name in known:
+        return known[name]
     found = called(name, (row.quantity for row in known.values()))
     if len(found) != 1:
         raise UsageError(
