@@ -267,7 +267,7 @@ def notes_for_people(report: Report) -> tuple[str, ...]:
 
 
 _NUMBERED = re.compile(r"(.*\D)(\d{1,9})$")
-Item = TypeVar("Item")
+Grouped = TypeVar("Grouped")
 
 
 def together(names: Sequence[str]) -> str:
@@ -305,9 +305,9 @@ def _numbers_in_runs(names: Iterable[str]) -> str:
     return ", ".join(texts)
 
 
-def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
+def grouped(items: Iterable[Grouped], key: Callable[[Grouped], Hashable]) -> list[list[Grouped]]:
     """Return the items in groups of equal key, in order of first occurrence."""
-    groups: dict[Hashable, list[Item]] = {}
+    groups: dict[Hashable, list[Grouped]] = {}
     for item in items:
         groups.setdefault(key(item), []).append(item)
     return list(groups.values())
