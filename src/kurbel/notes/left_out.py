@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from kurbel.arrays import Number
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.cylinder import with_article
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.tables.tables import LeftOut
@@ -49,7 +50,7 @@ def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
         known = mechanism.known_across and (
             pressed or (cylinder.friction and cylinder.friction.block)
         )
-        of_rod = {"S" if known else "S, N": f"a {mechanism.name} has no connecting rod"}
+        of_rod = {"S" if known else "S, N": f"{with_article(mechanism.name)} has no connecting rod"}
     # of a ram without a piston nobody expects an indicator
     if mechanism.slides and (cylinder.pistons or not cylinder.ram_force):
         no_gas = acting["gas force"]
