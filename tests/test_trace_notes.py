@@ -14,8 +14,9 @@ from kurbel.mechanisms.setting import Setting
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.notes.warnings import machine_notes
 from kurbel.solver.case import Case
-from kurbel.traces.checks import CHECKS, TraceReading
+from kurbel.traces.checks import CHECKS
 from kurbel.traces.correct import Trace, corrected
+from kurbel.traces.reading import TraceReading
 from representative import few
 
 AMBIENT = 1.01325
@@ -342,14 +343,17 @@ def test_no_trace_stops_a_check() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for _ in range(400):
-            reading = TraceReading(*(drawn := drawn_trace(random)), corrected(*drawn))
-            assert all(isinstance(check(reading), str) for check in CHECKS)
+            drawn = drawn_trace(random)
+            reading = TraceReading(*drawn, corrected(*drawn))
+            for check in CHECKS:
+                doubt = check.judge(reading)
+                assert doubt is None or isinstance(doubt.text, str)
 
 
 # what is judged wrongly, or not at all
 
 SUPERCHARGED = ENGINE._replace(exponent=1.38, inlet=1.5, outlet=1.6)
-MISPLACED = [(ENGINE, 2.0), (ENGINE, -2.0), (SUPERCHARGED, -2.0)]
+MISPLACED = [(ENGINE, 2.0), (ENGINE, -3.5), (SUPERCHARGED, -2.0)]
 
 
 @pytest.mark.parametrize(("engine", "degrees"), MISPLACED)
@@ -361,9 +365,8 @@ def test_a_dead_centre_two_degrees_off_is_seen_by_both_exponents(
     The dead centre is found within 1 deg, the loss angle that no pressure alone can tell.
     """
     true = indicated(FINE, absolute(engine, FINE))
-    assert abs(indicated(FINE, absolute(engine, FINE - degrees)) / true - 1) == pytest.approx(
-        0.14, abs=0.01
-    )
+    error = abs(indicated(FINE, absolute(engine, FINE - degrees)) / true - 1)
+    assert error == pytest.approx(0.07 * abs(degrees), abs=0.01)
     notes = notes_of(
         machine_text(
             written(tmp_path, FINE, absolute(engine, FINE - degrees)), ", compression_ratio: 15"

@@ -7,8 +7,9 @@
                 J₂ ω_n² w₂′ = T − M_load(w₂)
                 ϑ′ = w₁ − w₂
 
-M is the torque at uniform rotation. With an elastic coupling J₁ has the mean of the moving masses, and time runs as at
-uniform rotation: the model of the solver. Primes are derivatives by φ in radians. Formulas have + − × ÷ and powers
+M is the torque at uniform rotation. A load that does not depend on the speed leaves its level free: then the mean of
+ω_n/ω is 1, or with an elastic coupling that of w is 0. With an elastic coupling J₁ has the mean of the moving masses,
+and time runs as at uniform rotation: the model of the solver. Primes are derivatives by φ in radians. Formulas have + − × ÷ and powers
 only: they take floats, arrays and mpmath's numbers alike.
 """
 
@@ -20,7 +21,7 @@ from typing import NamedTuple, Union
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from kurbel.accuracy.methods import Number, integrals, largest_and_smallest, merged, mp, mpf
+from kurbel.accuracy.methods import Precise, integrals, largest_and_smallest, merged, mp, mpf
 from kurbel.accuracy.textbook import DIGITS, STEPS, Textbook, TextbookMachine, needed, unknown
 from kurbel.arrays import Array
 from kurbel.machine import Machine
@@ -35,13 +36,11 @@ MOST = 200
 
 def without_reference(machine: Machine) -> Iterator[str]:
     """Yield why the speed of a machine has no independent calculation here."""
-    load, wheel = machine.load, machine.flywheel
+    wheel = machine.flywheel
     if not machine.speed or wheel is None or wheel.inertia is None:
         yield "there is no speed line without a speed, and a flywheel with an inertia"
-    if load is None or (load.slip is None and not load.power):
-        yield "the load does not depend on the speed"
-    for what in unknown(machine, "ΔE"):
-        yield f"no independent calculation of {what}"
+    for obstacle in unknown(machine, "ΔE"):
+        yield f"no independent calculation of {obstacle}"
     if machine.efficiency != 1:
         yield "no independent calculation of an efficiency"
 
@@ -50,32 +49,36 @@ class SpeedOfShaft(NamedTuple):
     """What is compared: ω in rad/s every 30° (n,), δ, ω_max, and the largest and smallest torque in a coupling."""
 
     omega: Array
-    delta: Number
-    omega_max: Number
-    M_K: tuple[Number, ...]
+    delta: Precise
+    omega_max: Precise
+    M_K: tuple[Precise, ...]
 
 
 # the equations
 
 
 class LoadLaw(NamedTuple):
-    """The load torque in N m over w, by slip s or power k; mean: at the nominal speed."""
+    """The load torque in N m over w, by slip s or power k, 0 where it is constant; mean: at the nominal speed."""
 
-    mean: Number
-    slip: float | None
-    power: float | None
+    mean: Precise
+    slip: float | None = None
+    power: float = 0.0
 
-    def torque(self, w: Number) -> Number:
+    @property
+    def is_constant(self) -> bool:
+        """Whether it does not depend on the speed."""
+        return self.slip is None and self.power == 0
+
+    def torque(self, w: Precise) -> Precise:
         """Return M_load."""
         if self.slip is not None:
             return self.mean + abs(self.mean) / self.slip * w
         return self.mean * (1 + w) ** self.power
 
-    def slope(self, w: Number) -> Number:
+    def slope(self, w: Precise) -> Precise:
         """Return dM_load/dw."""
         if self.slip is not None:
             return abs(self.mean) / self.slip + 0 * w
-        assert self.power is not None
         return self.mean * self.power * (1 + w) ** (self.power - 1)
 
 
@@ -83,14 +86,14 @@ class RigidShaft(NamedTuple):
     """y = (z,) in J; torque M in N m, and energy ½ J(φ) ω_n² in J; nominal: ω_n in rad/s."""
 
     load: LoadLaw
-    nominal: Number
+    nominal: Precise
     unknowns: int = 1
 
-    def start(self, energy: Number) -> list[Number]:
+    def start(self, energy: Precise) -> list[Precise]:
         """Return y at uniform rotation."""
         return [0 * energy]
 
-    def speed(self, energy: Number, y: Sequence[Number]) -> Number:
+    def speed(self, energy: Precise, y: Sequence[Precise]) -> Precise:
         """Return w."""
         r = y[0] / energy
         return r / (1 + (1 + r) ** 0.5)
@@ -99,33 +102,54 @@ class RigidShaft(NamedTuple):
         """Return whether the shaft has kinetic energy, and not beyond all bounds."""
         return -1 < y[0] / energy < 1e12
 
-    def rate(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[Number]:
+    def rate(self, torque: Precise, energy: Precise, y: Sequence[Precise]) -> list[Precise]:
         """Return y′."""
         return [torque - self.load.torque(self.speed(energy, y))]
 
-    def slopes(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[list[Number]]:
+    def slopes(self, torque: Precise, energy: Precise, y: Sequence[Precise]) -> list[list[Precise]]:
         """Return the derivatives of y′ by y; dw/dz = 1/(J ω_n² (1 + w))."""
         w = self.speed(energy, y)
         return [[-self.load.slope(w) / (2 * energy * (1 + w))]]
+
+    def leveled(self, energy: Array, y: Array, weights: Array) -> Array:
+        """Return y plus the constant that makes the mean of ω_n/ω 1, by Newton's method; weights: of the mean.
+
+        Raises ArithmeticError where the shaft would stop.
+        """
+        z = y[0]
+        finest = 1e-32 if z.dtype == object else 1e-16
+        swing = float(z.max() - z.min())
+        for _ in range(80):
+            r = z / energy
+            if not bool((r > -1).all()):
+                break
+            slowness = (1 + r) ** -0.5
+            excess = ((slowness - 1) * weights).sum()
+            slope = (slowness**3 / energy * weights).sum() / 2
+            step = excess / slope
+            z = z + step
+            if abs(float(step)) <= finest * swing:
+                return z[np.newaxis]
+        raise ArithmeticError("no level of the speed has the nominal mean")
 
 
 class ElasticShaft(NamedTuple):
     """y = (ϑ in rad, w₁, w₂); stiffness in N m/rad, damping in N m s/rad, first, second: J₁ ω_n² and J₂ ω_n² in J."""
 
     load: LoadLaw
-    nominal: Number
-    stiffness: Number
-    damping: Number
-    first: Number
-    second: Number
+    nominal: Precise
+    stiffness: Precise
+    damping: Precise
+    first: Precise
+    second: Precise
     unknowns: int = 3
 
-    def start(self, energy: Number) -> list[Number]:
+    def start(self, energy: Precise) -> list[Precise]:
         """Return the twist by the mean torque, without vibration."""
         still = 0 * energy
         return [self.load.mean / self.stiffness + still, still, still]
 
-    def speed(self, energy: Number, y: Sequence[Number]) -> Number:
+    def speed(self, energy: Precise, y: Sequence[Precise]) -> Precise:
         """Return w₁."""
         return y[1]
 
@@ -133,11 +157,11 @@ class ElasticShaft(NamedTuple):
         """Return whether both masses turn forward, and not beyond all bounds."""
         return -1 < y[1] < 1e6 and -1 < y[2] < 1e6
 
-    def torque(self, y: Sequence[Number]) -> Number:
+    def torque(self, y: Sequence[Precise]) -> Precise:
         """Return T in N m."""
         return self.stiffness * y[0] + self.damping * self.nominal * (y[1] - y[2])
 
-    def rate(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[Number]:
+    def rate(self, torque: Precise, energy: Precise, y: Sequence[Precise]) -> list[Precise]:
         """Return y′."""
         passed = self.torque(y)
         return [
@@ -146,7 +170,7 @@ class ElasticShaft(NamedTuple):
             (passed - self.load.torque(y[2])) / self.second,
         ]
 
-    def slopes(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[list[Number]]:
+    def slopes(self, torque: Precise, energy: Precise, y: Sequence[Precise]) -> list[list[Precise]]:
         """Return the derivatives of y′ by y."""
         k, d = self.stiffness, self.damping * self.nominal
         rise = self.load.slope(y[2])
@@ -156,12 +180,17 @@ class ElasticShaft(NamedTuple):
             [k / self.second, d / self.second, -(d + rise) / self.second],
         ]
 
+    def leveled(self, energy: Array, y: Array, weights: Array) -> Array:
+        """Return y with speeds whose mean is nominal; weights: of the mean."""
+        mean = (y[1] * weights).sum()
+        return np.stack((y[0], y[1] - mean, y[2] - mean))
 
-Equation = Union[RigidShaft, ElasticShaft]
+
+ShaftEquation = Union[RigidShaft, ElasticShaft]
 """y′ = rate(torque, energy, y) of unknowns y."""
 
 
-def in_floats(equation: Equation) -> Equation:
+def equation_in_floats(equation: ShaftEquation) -> ShaftEquation:
     """Return an equation with floats for mpmath's numbers."""
     load = equation.load._replace(mean=float(equation.load.mean))
     nominal = float(equation.nominal)
@@ -197,7 +226,6 @@ class TextbookShaft:
     def __init__(self, machine: Machine) -> None:
         assert machine.speed is not None
         assert machine.flywheel is not None
-        assert machine.load is not None
         self._book = TextbookMachine(Textbook(machine), "ΔE")
         self.cycle = 360 * machine.revolutions
         self.nominal = 2 * mp.pi * mpf(machine.speed)
@@ -207,8 +235,10 @@ class TextbookShaft:
 
         # the equation
         mean = self._mean(self._torque)
-        load = LoadLaw(mean, machine.load.slip, machine.load.power)
-        self.equation: Equation = RigidShaft(load, self.nominal)
+        load = LoadLaw(mean)
+        if machine.load is not None:
+            load = LoadLaw(mean, machine.load.slip, machine.load.power or 0.0)
+        self.equation: ShaftEquation = RigidShaft(load, self.nominal)
         if machine.coupling is not None:
             coupling, square = machine.coupling, self.nominal**2
             first = self._mean(self._inertia) * square
@@ -216,25 +246,25 @@ class TextbookShaft:
             springs = mpf(coupling.stiffness), mpf(coupling.damping)
             self.equation = ElasticShaft(load, self.nominal, *springs, first, second)
 
-    def _mean(self, function: Callable[[Number, Number], Number]) -> Number:
+    def _mean(self, function: Callable[[Precise, Precise], Precise]) -> Precise:
         """Return the mean of a function over the cycle."""
         areas = integrals(np.frompyfunc(function, 2, 1), self.edges, STEPS)
         return areas.sum() / self.cycle
 
-    def _torque(self, phi: Number, within: Number) -> Number:
+    def _torque(self, phi: Precise, within: Precise) -> Precise:
         """Return M in N m at an angle in degrees."""
         return needed("ΔE", self._book.addends, phi, within)
 
-    def _inertia(self, phi: Number, within: Number) -> Number:
+    def _inertia(self, phi: Precise, within: Precise) -> Precise:
         """Return J(φ) in kg m²."""
         moving = [cylinder.inertia(phi - place) for cylinder, place in self._book.cylinders]
         return sum(moving, self._rigid)
 
-    def energy(self, phi: Number, within: Number) -> Number:
+    def energy(self, phi: Precise, within: Precise) -> Precise:
         """Return ½ J(φ) ω_n² in J."""
         return self._inertia(phi, within) * self.nominal**2 / 2
 
-    def at(self, phi: Number, within: Number) -> tuple[Number, Number]:
+    def at(self, phi: Precise, within: Precise) -> tuple[Precise, Precise]:
         """Return torque and energy at an angle in degrees."""
         return self._torque(phi, within), self.energy(phi, within)
 
@@ -275,8 +305,8 @@ class Mesh(NamedTuple):
     is_long: Array
 
 
-def periodic(
-    equation: Equation, at: Callable[[Array, Array], Array], edges: Array, count: int
+def periodic_solution(
+    equation: ShaftEquation, at: Callable[[Array, Array], Array], edges: Array, count: int
 ) -> Mesh:
     """Return the periodic solution by collocation at so many nodes, in floats or, by the edges, in mpmath's numbers.
 
@@ -300,7 +330,7 @@ def periodic(
         arriving = np.roll(y[:, :, -1], 1, axis=1)[:, :, None]
         missing = (arriving + widths * (rate @ matrix.T) - y).astype(float)
         slopes = equation.slopes(floats[0], floats[1], list(y.astype(float)))
-        step = _newton_step(missing, slopes, floats[2], floats[3])
+        step = _newton_step(missing, slopes, floats[2], floats[3], equation.load.is_constant)
         if not np.isfinite(step).all():
             break
 
@@ -314,6 +344,8 @@ def periodic(
         size = float((np.abs(step) / sizes).max())
         is_exact = size < (1e-30 if is_precise else 1e-14)
         if is_exact or (size < 1e-9 and size > size_before / 2):
+            if equation.load.is_constant:
+                y = equation.leveled(energy, y, widths / widths.sum() * matrix[-1])
             arriving = np.roll(y[:, :, -1], 1, axis=1)[:, :, None]
             y = np.concatenate((arriving, y), axis=2)
             return Mesh(edges, y, energy, _too_long(y.astype(float), nodes))
@@ -322,9 +354,16 @@ def periodic(
 
 
 def _newton_step(
-    missing: Array, slopes: list[list[Number]], lengths: Array, matrix: Array
+    missing: Array,
+    slopes: list[list[Precise]],
+    lengths: Array,
+    matrix: Array,
+    is_level_free: bool,
 ) -> Array:
-    """Return the corrections (unknowns, elements, s) that a linear equation needs, periodic over all elements."""
+    """Return the corrections (unknowns, elements, s) that a linear equation needs, periodic over all elements.
+
+    is_level_free: whether the level of the speed is not determined; the correction then leaves it nearly as it is.
+    """
     unknowns, elements, count = missing.shape
     system = np.zeros((elements, unknowns, count, unknowns, count))
     for row in range(unknowns):
@@ -349,7 +388,11 @@ def _newton_step(
     for last in solved[:, :, -1]:
         offset = last[:, 0] + last[:, 1:] @ offset
         passed = last[:, 1:] @ passed
-    entering = np.linalg.solve(np.eye(unknowns) - passed, offset)
+    change = np.eye(unknowns) - passed
+    if is_level_free:
+        entering = np.linalg.lstsq(change, offset, rcond=1e-9)[0]
+    else:
+        entering = np.linalg.solve(change, offset)
     steps = np.empty((elements, unknowns, count))
     for number, element in enumerate(solved):
         steps[number] = element[:, :, 0] + element[:, :, 1:] @ entering
@@ -375,16 +418,16 @@ def speed_of(shaft: TextbookShaft, most: int) -> SpeedOfShaft:
 
     Raises ArithmeticError where there is none, or more than so many elements would be needed.
     """
-    rough, edges = in_floats(shaft.equation), shaft.edges
+    rough, edges = equation_in_floats(shaft.equation), shaft.edges
     while True:
-        mesh = periodic(rough, shaft.fits.at, edges.astype(float), 14)
+        mesh = periodic_solution(rough, shaft.fits.at, edges.astype(float), 14)
         if not mesh.is_long.any():
             break
         middles = (edges[1:] + edges[:-1]) / 2
         edges = np.sort(np.append(edges, middles[mesh.is_long]))
         if len(edges) > most:
             raise ArithmeticError(f"the reference needs more than {most} elements")
-    exact = periodic(shaft.equation, np.frompyfunc(shaft.at, 2, 2), edges, 20)
+    exact = periodic_solution(shaft.equation, np.frompyfunc(shaft.at, 2, 2), edges, 20)
     return _compared(shaft, exact)
 
 
@@ -402,13 +445,13 @@ def _compared(shaft: TextbookShaft, mesh: Mesh) -> SpeedOfShaft:
     if isinstance(equation, ElasticShaft):
         mean = 1 + widths @ (w @ weights)
 
-    def speed(y: Sequence[Number], phi: Number, within: Number) -> Number:
+    def speed(y: Sequence[Precise], phi: Precise, within: Precise) -> Precise:
         return equation.speed(shaft.energy(phi, within), y)
 
     highest = _largest(mesh, w, speed)
     lowest = -_largest(mesh, -w, lambda *at: -speed(*at))
     delta = (highest - lowest) / mean
-    M_K: tuple[Number, ...] = ()
+    M_K: tuple[Precise, ...] = ()
     if isinstance(equation, ElasticShaft):
         torque, samples = equation.torque, np.asarray(equation.torque(list(mesh.y[:, :, 1:])))
         greatest = _largest(mesh, samples, lambda y, *_: torque(y))
@@ -418,8 +461,8 @@ def _compared(shaft: TextbookShaft, mesh: Mesh) -> SpeedOfShaft:
 
 
 def _largest(
-    mesh: Mesh, samples: Array, function: Callable[[Sequence[Number], Number, Number], Number]
-) -> Number:
+    mesh: Mesh, samples: Array, function: Callable[[Sequence[Precise], Precise, Precise], Precise]
+) -> Precise:
     """Return the largest value of a function of y, φ and an angle within, near its largest sample (elements, s)."""
     count = len(samples)
     top = int(samples.max(axis=1).argmax())
@@ -428,8 +471,8 @@ def _largest(
 
 
 def _largest_on(
-    mesh: Mesh, number: int, function: Callable[[Sequence[Number], Number, Number], Number]
-) -> Number:
+    mesh: Mesh, number: int, function: Callable[[Sequence[Precise], Precise, Precise], Precise]
+) -> Precise:
     """Return the largest value on one element, on which y is interpolated through its beginning and its nodes."""
     inner, _ = collocation(mesh.y.shape[2] - 1)
     nodes = np.append(mpf(0), inner)
@@ -439,7 +482,7 @@ def _largest_on(
     weights = 1 / differences.prod(axis=1)
     low, high = mesh.edges[number], mesh.edges[number + 1]
 
-    def at(phi: Number, within: Number) -> Number:
+    def at(phi: Precise, within: Precise) -> Precise:
         distances = (phi - low) / (high - low) - nodes
         at_node = np.flatnonzero(distances == 0)
         if len(at_node):

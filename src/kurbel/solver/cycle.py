@@ -83,16 +83,14 @@ class SampledCylinder:
         state = _state_on(drive, pieces)
         if drive.has_force:
             if some(drive.ring_surface != 0):
-                pieces, state = _cut(drive, pieces, state, lambda one: [one.pressure_difference])
+                pieces, state = _cut(drive, pieces, state, _ring_pressure)
             if drive.rubs or drive.yoke_rubs:
-                pieces, state = _cut(
-                    drive, pieces, state, lambda one: [_sense(one.without_pin_friction)]
-                )
+                pieces, state = _cut(drive, pieces, state, _sense_without_pins)
             _refuse_locking(state, pieces)
             if drive.pin_friction:
                 pieces, state = _cut(drive, pieces, state, _loads_of_pins)
                 if drive.rubs:
-                    pieces, state = _cut(drive, pieces, state, lambda one: [_sense(one)])
+                    pieces, state = _cut(drive, pieces, state, _sense_with_pins)
         fine, state, _ = _halved(drive, pieces, state, _smooth)
         return fine, state, pieces
 
@@ -115,17 +113,17 @@ class SampledCylinder:
 
     def sampled(self, column: str) -> Array | None:
         """Return a column at the nodes of the pieces, (nodes, pieces); None for one that is left out."""
-        found = self.samples[column]
-        return None if found is None else self.pieces.filled(found)
+        values = self.samples[column]
+        return None if values is None else self.pieces.filled(values)
 
     def extremes_over(self, columns: Mapping[str, Number | None]) -> dict[str, Extremes]:
         """Return the extremes in SI of columns of `samples` by id, without those that are None."""
-        pieces, names = (
-            self.pieces,
-            [name for name, values in columns.items() if values is not None],
-        )
-        found = pieces.extremes(_known(pieces, columns.values())).each(self.result) if names else []
-        return dict(zip(names, found))
+        pieces = self.pieces
+        names = [name for name, values in columns.items() if values is not None]
+        if not names:
+            return {}
+        extremes = pieces.extremes(_known(pieces, columns.values())).each(self.result)
+        return dict(zip(names, extremes))
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
@@ -138,14 +136,12 @@ def _state_on(drive: Drive, pieces: Pieces) -> State:
 
     These are computed once.
     """
-    if drive.count is None or varies(
-        (drive.mechanism, drive.cylinder.timed_pistons, drive.machine.ambient)
-    ):
+    what_may_vary = (drive.mechanism, drive.cylinder.timed_pistons, drive.machine.ambient)
+    if drive.count is None or varies(what_may_vary):
         return State.on(drive, pieces)
-    one = State.on(drive, pieces.taken(pieces.machine == 0))
-    return _restored(
-        drive, pieces, [np.tile(values, drive.count) for values in _before_friction(one)]
-    )
+    first = State.on(drive, pieces.taken(pieces.machine == 0))
+    repeated = [np.tile(values, drive.count) for values in _before_friction(first)]
+    return _restored(drive, pieces, repeated)
 
 
 def _halved(
@@ -154,14 +150,16 @@ def _halved(
     """Return the pieces, halved until these columns are polynomials, with the state and the columns on them."""
     judged = _known(pieces, columns(state))
 
-    def sample(some: Pieces) -> list[Array]:
-        if some is pieces:
+    def sample(halves: Pieces) -> list[Array]:
+        if halves is pieces:
             return [*judged, *_before_friction(state)]
-        own = State.on(drive, some)
-        return [*_known(some, columns(own)), *_before_friction(own)]
+        state_there = State.on(drive, halves)
+        return [*_known(halves, columns(state_there)), *_before_friction(state_there)]
 
     fine, values = refined(pieces, sample, len(judged))
-    finer = state if fine is pieces else _restored(drive, fine, values[len(judged) :])
+    finer = state
+    if fine is not pieces:
+        finer = _restored(drive, fine, values[len(judged) :])
     return fine, finer, values[: len(judged)]
 
 
@@ -170,29 +168,29 @@ def _cut(
 ) -> tuple[Pieces, State]:
     """Return the pieces cut where one of these columns changes sign, and the state on them."""
     pieces, state, values = _halved(drive, pieces, state, columns)
-    passed = [pieces.zeros(value) for value in values]
-    cut = pieces.split(Angles(*(np.concatenate(each) for each in zip(*passed))))
+    zeros = [pieces.zeros(value) for value in values]
+    machine = np.concatenate([angles.machine for angles in zeros])
+    degrees = np.concatenate([angles.degrees for angles in zeros])
+    cut = pieces.split(Angles(machine, degrees))
     if cut is pieces:
         return pieces, state
-    source, new = cut.kept_of(pieces)  # of pieces that are not cut the values are kept
+
+    # of pieces that are not cut the values are kept
+    source, new = cut.kept_of(pieces)
     fresh = cut.taken(new)
-    known = _before_friction(state), _before_friction(State.on(drive, fresh))
-    whole, both = joined_pieces(
-        [(pieces, source, known[0]), (fresh, np.arange(len(new)), known[1])]
-    )
-    return whole, _restored(drive, whole, both)
+    kept = (pieces, source, _before_friction(state))
+    computed = (fresh, np.arange(len(new)), _before_friction(State.on(drive, fresh)))
+    joined, values = joined_pieces([kept, computed])
+    return joined, _restored(drive, joined, values)
 
 
 def _before_friction(state: State) -> list[Array]:
     """Return motion and gas forces, which are independent of friction and from which `_restored` makes a state."""
-    motion = [
-        state.angle.sin,
-        state.angle.cos,
-        state.slope,
-        state.curvature,
-        *(state.rod_angle or ()),
-    ]
-    return [state.filled(one) for one in (*motion, *state.piston_forces)]
+    angle = state.angle
+    columns = [angle.sin, angle.cos, state.slope, state.curvature]
+    columns += state.rod_angle or ()
+    columns += state.piston_forces
+    return [state.filled(column) for column in columns]
 
 
 def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
@@ -208,7 +206,25 @@ def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
 def _loads_of_pins(state: State) -> list[Number]:
     """Return the loads of the pins without their friction: where one passes through zero, its magnitude has a kink."""
     free = state.without_pin_friction
-    return [on_pin(free).T, *([on_crosshead_pin(free).D] if free.rod_angle else [])]
+    loads = [on_pin(free).T]
+    if free.rod_angle:
+        loads.append(on_crosshead_pin(free).D)
+    return loads
+
+
+def _ring_pressure(state: State) -> list[Number]:
+    """Return the difference of pressures that presses the rings against the wall."""
+    return [state.pressure_difference]
+
+
+def _sense_without_pins(state: State) -> list[Number]:
+    """Return the force whose sign decides which side of a guide is loaded, without friction in the pins."""
+    return [_sense(state.without_pin_friction)]
+
+
+def _sense_with_pins(state: State) -> list[Number]:
+    """Return the force whose sign decides which side of a guide is loaded."""
+    return [_sense(state)]
 
 
 def _sense(state: State) -> Number:
@@ -219,23 +235,26 @@ def _sense(state: State) -> Number:
 def _refuse_locking(state: State, pieces: Pieces) -> None:
     """Raise NoSolutionError, with the exact angle, if the crosshead of the only machine is self-locking."""
     drive = state.drive
-    if drive.count is None and may_lock(drive.cylinder):
-        below = state.without_pin_friction.guide_denominator
-        if (below <= 0).any():
-            at = pieces.zeros(below).degrees
-            first = float(at[0]) if len(at) else float(pieces.degrees.T[(below <= 0).T][0])
-            raise NoSolutionError(drive.locks(first))
+    if drive.count is not None or not may_lock(drive.cylinder):
+        return
+    denominator = state.without_pin_friction.guide_denominator
+    locks = denominator <= 0
+    if locks.any():
+        zeros = pieces.zeros(denominator).degrees
+        first = float(zeros[0]) if len(zeros) else float(pieces.degrees.T[locks.T][0])
+        raise NoSolutionError(drive.locks(first))
 
 
 def _smooth(state: State) -> list[Number | None]:
     """Return the quantities that decide how often pieces are halved: they must be polynomials on every piece."""
-    offered = [offer.of(state) for offer in state.mechanism.OFFERS if offer.quantity.extremes]
-    forces = (
-        (state.P_gas, state.P, state.N, state.T, *(state.rubbing or ()))
-        if state.drive.has_force
-        else ()
-    )
-    return [state.curvature, *forces, *offered]
+    columns: list[Number | None] = [state.curvature]
+    if state.drive.has_force:
+        columns += [state.P_gas, state.P, state.N, state.T]
+        columns += state.rubbing or ()
+    for offer in state.mechanism.OFFERS:
+        if offer.quantity.extremes:
+            columns.append(offer.of(state))
+    return columns
 
 
 def _known(pieces: Pieces, values: Iterable[Number | None]) -> list[Array]:
@@ -260,14 +279,19 @@ def where_is(pieces: Pieces, values: Array, value: float) -> Where:
     At a jump over the value it is the angle of the jump; one that only leads to the value does not pass it.
     """
     size = np.maximum(pieces.largest(values), abs(value))
-    rising, falling = (
-        pieces.zeros(sign * (values - value), size).degrees.tolist() for sign in (1, -1)
-    )
-    passed = [one for one in rising if any(abs(one - other) < 1e-6 for other in falling)]
+    above = values - value
+    rising = pieces.zeros(above, size).degrees
+    falling = pieces.zeros(-above, size).degrees
+    angles = set[float]()
+    for degrees in rising.tolist():
+        if (np.abs(falling - degrees) < 1e-6).any():
+            angles.add(degrees)
+
     high, high_at, low, low_at = (float(extreme[0, 0]) for extreme in pieces.extremes(values[None]))
-    ends = ((high, high_at), (low, low_at))
-    reached = [degrees for end, degrees in ends if math.isclose(end, value, rel_tol=1e-14)]
-    return Where(tuple(sorted({*passed, *reached})), (low, high))
+    for end, degrees in ((high, high_at), (low, low_at)):
+        if math.isclose(end, value, rel_tol=1e-14):
+            angles.add(degrees)
+    return Where(tuple(sorted(angles)), (low, high))
 
 
 def lasting(pieces: Pieces, values: Array, changes: Array, noise: float) -> Array:

@@ -165,12 +165,13 @@ class Drive:
         """The cycle between the angles at which something bends or jumps: dead centres and the corners of cards."""
         count = self.count or 1
         centres = every_dead_centre(self.mechanism, count, self.cycle)
-        breaks = Angles(np.repeat(np.arange(count), centres.shape[1]), centres.ravel())
-        jumps = [breaks, *(starts for gas in self.gas for starts in gas.starts)]
-        whole = Angles(*(np.concatenate(parts) for parts in zip(*jumps)))
-        return Pieces.between(
-            whole, count, self.cycle, 16 if len(whole.degrees) < _DENSE * count else 6
-        )
+        bends = [Angles(np.repeat(np.arange(count), centres.shape[1]), centres.ravel())]
+        for gas in self.gas:
+            bends += gas.starts
+        machine = np.concatenate([angles.machine for angles in bends])
+        degrees = np.concatenate([angles.degrees for angles in bends])
+        is_dense = len(degrees) >= _DENSE * count
+        return Pieces.between(Angles(machine, degrees), count, self.cycle, 6 if is_dense else 16)
 
     def centrifugal(self, mass: Number) -> Number:
         """Return the centrifugal force m R ω² in N of a mass in kg at the crank pin; 0 where no speed is given."""
@@ -180,24 +181,24 @@ class Drive:
     def weight_of(self, mass: Number) -> tuple[Number, Number]:
         """Return the weight in N of a mass in kg along the stroke line and on the guide; 0 where it is left out."""
         incline = self._incline
-        return (
-            (mass * GRAVITY * incline.sin, mass * GRAVITY * incline.cos) if incline else (0.0, 0.0)
-        )
+        if not incline:
+            return 0.0, 0.0
+        return mass * GRAVITY * incline.sin, mass * GRAVITY * incline.cos
 
     # pressures
 
     @cached_property
     def gas(self) -> tuple[PistonGas, ...]:
         """Pressures on the pistons that have an indicator."""
-        found = []
+        gases = []
         for number, piston in enumerate(self.cylinder.timed_pistons):
             if piston.indicator:
                 turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
                 repeats, ambient = self.revolutions // turns, self.machine.ambient
-                found.append(
+                gases.append(
                     PistonGas(piston, self.mechanism, 360.0 * turns, ambient, repeats, self.count)
                 )
-        return tuple(found)
+        return tuple(gases)
 
     @property
     def own_gas(self) -> PistonGas | None:
@@ -274,7 +275,7 @@ class Drive:
 
 def any_of(conditions: Iterable[Truth]) -> Truth:
     """Return whether any of the conditions holds, each a bool or one of every machine, (machines,)."""
-    found: Truth = False
+    holds: Truth = False
     for condition in conditions:
-        found = found | condition
-    return found
+        holds = holds | condition
+    return holds

@@ -64,7 +64,8 @@ def position(forces: CylinderForces) -> Number:
 def moves(group: Sequence[CylinderForces]) -> bool:
     """Return whether identical cylinders have moving masses and a speed."""
     drive = group[0].drive
-    return bool(drive.has_inertia and (some(drive.mass != 0) or some(drive.pin_inertia != 0)))
+    has_mass = some(drive.mass != 0) or some(drive.pin_inertia != 0)
+    return bool(drive.has_inertia and has_mass)
 
 
 class Term(NamedTuple):
@@ -93,8 +94,9 @@ class TurningEffort:
         self.cycle = 360.0 * machine.revolutions
         self.diagram = machine.load.diagram if machine.load else None
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
-        given = machine.effort
-        self.swing: Any = given.energy(machine.revolutions) if given and given.alone else None
+        self.swing: Any = None
+        if machine.effort and machine.effort.alone:
+            self.swing = machine.effort.energy(machine.revolutions)
         # cylinders in which a force acts, identical ones in one group
         groups: dict[CylinderForces, list[CylinderForces]] = {}
         for forces in cylinders:
@@ -111,43 +113,57 @@ class TurningEffort:
     @cached_property
     def pieces(self) -> Pieces:
         """The cycle in pieces on which every torque is a polynomial. Raises UsageError where no force acts."""
-        name, speed, count = self.machine.name, self.machine.speed, self.count or 1
+        name, count = self.machine.name, self.count or 1
         if not self.groups and not self.machine.effort:
             raise UsageError(
                 f"{name}: no force acts, so there is no torque; kurbel check shows why"
             )
-        if speed is not None:
-            beyond = (speed != 0) & ((speed <= _SLOWEST) | (speed >= 1 / _SLOWEST))
-            self.refused |= beyond
-            if self.count is None and beyond:
-                size = "large" if speed > 1 else "small"
-                raise UsageError(
-                    f"{name}: a speed of {show(speed, 'speed')} is too {size} to compute with"
-                )
-        known = []
-        for one in (one for one in (self.machine.effort, self.diagram) if one):
-            from kurbel.solver.given_torque import corners
+        self._refuse_speeds()
 
-            known.append(corners(one, self.cycle))
-        breaks = np.concatenate([np.zeros(0), *known])
+        # cut at the points of a torque and of a load that are given over the angle
+        points: list[Array] = [np.zeros(0)]
+        for diagram in (self.machine.effort, self.diagram):
+            if diagram:
+                from kurbel.solver.given_torque import corners
+
+                points.append(corners(diagram, self.cycle))
+        breaks = np.concatenate(points)
         cuts = Angles(np.repeat(np.arange(count), len(breaks)), np.tile(breaks, count))
         if not self.groups:
             return Pieces.between(cuts, count, self.cycle)
-        parts = [(group[0].pieces, position(one)) for group in self.groups for one in group]
+
+        # and where the forces of any cylinder bend
+        parts = []
+        for group in self.groups:
+            parts += [(group[0].pieces, position(cylinder)) for cylinder in group]
         return common(parts, self.cycle).split(cuts)
+
+    def _refuse_speeds(self) -> None:
+        """Refuse machines with a speed that is beyond floats; raise UsageError for the only one."""
+        speed = self.machine.speed
+        if speed is None:
+            return
+        is_beyond = (speed != 0) & ((speed <= _SLOWEST) | (speed >= 1 / _SLOWEST))
+        self.refused |= is_beyond
+        if self.count is None and is_beyond:
+            size = "large" if speed > 1 else "small"
+            raise UsageError(
+                f"{self.machine.name}: a speed of {show(speed, 'speed')} is too {size} to compute with"
+            )
 
     def sampled(self, terms: Sequence[Term]) -> Array:
         """Return the sum of the terms on the common pieces; exactly 0 in machines where the terms cancel."""
-        pieces, size = self.pieces, np.zeros(self.pieces.count)
-        whole = pieces.filled(0.0)
+        pieces = self.pieces
+        size = np.zeros(pieces.count)
+        summed = pieces.filled(0.0)
         for factor, cylinders, torque in terms:
-            own = cylinders[0].pieces
-            values = own.filled(torque(cylinders[0].samples)) * own.of(factor)
-            size = size + len(cylinders) * own.largest(values)
+            source = cylinders[0].pieces
+            values = source.filled(torque(cylinders[0].samples)) * source.of(factor)
+            size = size + len(cylinders) * source.largest(values)
             for cylinder in cylinders:
-                whole = whole + pieces.carried(values, own, position(cylinder))
-        lasting = unless_cancelled(pieces.largest(whole), size, _CANCELLED) != 0
-        return whole if lasting.all() else np.where(pieces.of(lasting), whole, 0.0)
+                summed = summed + pieces.carried(values, source, position(cylinder))
+        is_left = unless_cancelled(pieces.largest(summed), size, _CANCELLED) != 0
+        return summed if is_left.all() else np.where(pieces.of(is_left), summed, 0.0)
 
     def at(
         self,
@@ -161,10 +177,9 @@ class TurningEffort:
 
         machine: of each angle, (k,), where there are many. What is rounding of their largest value is 0.
         """
-        own = np.zeros(len(degrees), dtype=np.intp) if machine is None else machine
-        return unless_cancelled(
-            pieces.at(values, own, degrees, within), pieces.largest(values)[own], _CANCELLED
-        )
+        numbers = np.zeros(len(degrees), dtype=np.intp) if machine is None else machine
+        at_angles = pieces.at(values, numbers, degrees, within)
+        return unless_cancelled(at_angles, pieces.largest(values)[numbers], _CANCELLED)
 
     # the effort
 
@@ -200,26 +215,24 @@ class TurningEffort:
         """Return the loss, at most one term, of driving pistons that share their rods with driven ones; see `share`."""
         drive = group[0].drive
         factor = where(drive.drives & drive.driven, self.machine.efficiency - 1.0, 0.0)
-        return (
-            [Term(factor, group, lambda state: state.P_driving * state.slope)]
-            if some(factor != 0)
-            else []
-        )
+        if not some(factor != 0):
+            return []
+        return [Term(factor, group, lambda state: state.P_driving * state.slope)]
 
     @cached_property
     def terms(self) -> list[Term]:
         """The terms of M with the losses of the machine."""
-        whole = [Term(self.share(group[0].drive), group) for group in self.groups]
-        return whole + [term for group in self.groups for term in self.lost(group)]
+        terms = [Term(self.share(group[0].drive), group) for group in self.groups]
+        for group in self.groups:
+            terms += self.lost(group)
+        return terms
 
     @cached_property
     def M(self) -> Array:
         """The turning effort in N m, with the losses of the machine; see `share`."""
-        return (
-            self.sampled(self.terms)
-            if self.given is None
-            else self.given * self.pieces.of(self.share(None))
-        )
+        if self.given is None:
+            return self.sampled(self.terms)
+        return self.given * self.pieces.of(self.share(None))
 
     @cached_property
     def mean(self) -> Array:
@@ -238,35 +251,36 @@ class TurningEffort:
         level = self.pieces.filled(self.pieces.of(self.mean))
         if self.diagram is None:
             return level
-        given = _torque_on(self.diagram, self.pieces)
-        return level + (given - self.pieces.of(self.pieces.mean(given)))
+        torque = _torque_on(self.diagram, self.pieces)
+        return level + (torque - self.pieces.of(self.pieces.mean(torque)))
 
     @property
     def deficit(self) -> Array:
         """Mean of M less that of a load by points in N m, (machines,); 0 where they agree, and for another load."""
-        given = (
-            self.pieces.mean(_torque_on(self.diagram, self.pieces)) if self.diagram else self.mean
-        )
-        return unless_cancelled(
-            self.mean - given, np.maximum(np.abs(given), np.abs(self.mean)), _BALANCED
-        )
+        load = self.mean
+        if self.diagram:
+            load = self.pieces.mean(_torque_on(self.diagram, self.pieces))
+        size = np.maximum(np.abs(load), np.abs(self.mean))
+        return unless_cancelled(self.mean - load, size, _BALANCED)
 
     # the masses
 
     @property
     def inertia_terms(self) -> list[Term]:
         """The terms of the torque of the moving masses in N m, each with its share of the losses; see `M`."""
-        return [Term(self.share(one[0].drive), one, torque_of_inertia) for one in self._moving]
+        return [
+            Term(self.share(group[0].drive), group, torque_of_inertia) for group in self._moving
+        ]
 
     @cached_property
     def inertia_torque(self) -> Array:
         """The torque of all moving masses in N m, −½ ω_n² dJ/dφ, without losses."""
-        return self.sampled([Term(1.0, one, torque_of_inertia) for one in self._moving])
+        return self.sampled([Term(1.0, group, torque_of_inertia) for group in self._moving])
 
     @cached_property
     def J_moving(self) -> Array:
         """The reduced moment of inertia Σ m x′² + … in kg m² of the moving masses."""
-        return self.sampled([Term(1.0, one, reduced_inertia) for one in self._moving])
+        return self.sampled([Term(1.0, group, reduced_inertia) for group in self._moving])
 
     # the excess
 
@@ -276,28 +290,29 @@ class TurningEffort:
 
         Raises NoSolutionError where the losses leave too little of what drives the machine.
         """
-        too_little = (self.mean < 0) & (self.machine.efficiency != 1) & self.drives
-        self.refused |= too_little
-        if self.count is None and too_little.any():
-            eta, mean = self.machine.efficiency, float(self.mean[0])
-            indicated = (
-                self.sampled([Term(1.0, group) for group in self.groups])
-                if self.given is None
-                else self.given
-            )
-            whole = float(self.mean_of(indicated)[0])
-            runs = "with no efficiency"
-            if whole >= 0:  # the mean is linear in η
-                least = 1 - (1 - eta) * whole / (whole - mean)
-                printed = next(
-                    one for digits in range(4, 17) if (one := round(least, digits)) >= least
-                )
-                runs = f"from 'efficiency: {printed}' on"
-            raise NoSolutionError(
-                f"the machine cannot run: with the efficiency {eta:g} its driving pistons give a mean torque that is "
-                f"{show(-mean, 'torque')} less than driven pistons and friction take; it runs {runs}"
-            )
+        gets_too_little = (self.mean < 0) & (self.machine.efficiency != 1) & self.drives
+        self.refused |= gets_too_little
+        if self.count is None and gets_too_little.any():
+            raise self._no_effort()
         return self._excess_by(self.M - self.load)
+
+    def _no_effort(self) -> NoSolutionError:
+        """Return the error of a machine that cannot run, with the efficiency from which on it can."""
+        eta, mean = self.machine.efficiency, float(self.mean[0])
+        without_losses = self.given
+        if without_losses is None:
+            without_losses = self.sampled([Term(1.0, group) for group in self.groups])
+        full_mean = float(self.mean_of(without_losses)[0])
+        runs = "with no efficiency"
+        if full_mean >= 0:  # the mean is linear in η
+            least = 1 - (1 - eta) * full_mean / (full_mean - mean)
+            shown = (round(least, digits) for digits in range(4, 17))
+            enough = next(efficiency for efficiency in shown if efficiency >= least)
+            runs = f"from 'efficiency: {enough}' on"
+        return NoSolutionError(
+            f"the machine cannot run: with the efficiency {eta:g} its driving pistons give a mean torque that is "
+            f"{show(-mean, 'torque')} less than driven pistons and friction take; it runs {runs}"
+        )
 
     def _excess_by(self, torque: Array) -> ExcessWork:
         swing = None if self.swing is None else self.swing * self.share(None)
@@ -307,8 +322,8 @@ class TurningEffort:
     def missing_inertia(self) -> list[Term]:
         """What the losses take off the torque of the moving masses: η holds for it, too, but not for kinetic energy."""
         return [
-            Term(1 - share, one, quantity)
-            for share, one, quantity in self.inertia_terms
+            Term(1 - share, group, quantity)
+            for share, group, quantity in self.inertia_terms
             if some(share != 1)
         ]
 
@@ -316,9 +331,9 @@ class TurningEffort:
     def true_excess(self) -> ExcessWork:
         """The excess that changes the kinetic energy: losses do not reduce its share of the moving masses."""
         missing = self.missing_inertia
-        return (
-            self._excess_by(self.excess.torque + self.sampled(missing)) if missing else self.excess
-        )
+        if not missing:
+            return self.excess
+        return self._excess_by(self.excess.torque + self.sampled(missing))
 
 
 class ExcessWork:
@@ -330,13 +345,14 @@ class ExcessWork:
 
     def __init__(self, pieces: Pieces, torque: Array, size: Array, swing: Number | None) -> None:
         self.pieces, self._size, self._swing = pieces, size, swing
-        uneven = pieces.largest(torque) > _UNIFORM * size
-        self.torque = torque if uneven.all() else np.where(pieces.of(uneven), torque, 0.0)
-        whole = pieces.running(self.torque)
-        gained = np.append(
-            whole[-1, pieces.first[1:] - 1], whole[-1, -1]
-        )  # by the rounding of the mean
-        self.E = np.asarray(whole - pieces.of(gained / pieces.cycle) * pieces.degrees)
+        is_uneven = pieces.largest(torque) > _UNIFORM * size
+        self.torque = torque
+        if not is_uneven.all():
+            self.torque = np.where(pieces.of(is_uneven), torque, 0.0)
+        running = pieces.running(self.torque)
+        # what is gained in a cycle, by the rounding of the mean, is taken off evenly
+        gained = np.append(running[-1, pieces.first[1:] - 1], running[-1, -1])
+        self.E = np.asarray(running - pieces.of(gained / pieces.cycle) * pieces.degrees)
 
     @cached_property
     def crossings(self) -> Angles:
@@ -347,20 +363,21 @@ class ExcessWork:
     @cached_property
     def lobes(self) -> Array:
         """Work in J of every lobe from its crossing to the next, cyclically; positive ones speed the machine up."""
-        machine, heights = self.crossings.machine, self.pieces.at(self.E, *self.crossings)
+        machine = self.crossings.machine
+        heights = self.pieces.at(self.E, *self.crossings)
         following = np.roll(heights, -1)
         # the last crossing of each machine is followed by its own first one
-        following[np.flatnonzero(np.diff(machine, append=-1))] = heights[
-            np.flatnonzero(np.diff(machine, prepend=-1))
-        ]
+        first = np.flatnonzero(np.diff(machine, prepend=-1))
+        last = np.flatnonzero(np.diff(machine, append=-1))
+        following[last] = heights[first]
         return following - heights
 
     @cached_property
     def summits(self) -> SampledExtremes:
         """Largest and smallest E in J with their angles, the first of equal ones, (1, n); nan where E is the same."""
         size = self.pieces.integral(np.abs(self.torque))  # work of all lobes, each counted positive
-        found = self.pieces.extremes(self.E[None], size[None])
-        return SampledExtremes(*(np.where(size == 0, np.nan, one) for one in found))
+        extremes = self.pieces.extremes(self.E[None], size[None])
+        return SampledExtremes(*(np.where(size == 0, np.nan, values) for values in extremes))
 
     @cached_property
     def dE(self) -> Array:
@@ -370,7 +387,8 @@ class ExcessWork:
         return np.nan_to_num(self.summits.largest[0] - self.summits.smallest[0], nan=0.0)
 
 
-def _torque_on(given: KnownDiagram, pieces: Pieces) -> Array:
+def _torque_on(diagram: KnownDiagram, pieces: Pieces) -> Array:
+    """Return a torque that is given over the angle at the nodes of pieces, in N m."""
     from kurbel.solver.given_torque import torque_on
 
-    return torque_on(given, pieces)
+    return torque_on(diagram, pieces)

@@ -7,7 +7,7 @@ They are printed in the order of their definition, for people below the `Heading
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
@@ -34,6 +34,7 @@ from kurbel.quantity import (
     ResultCondition,
     ambiguity,
     called,
+    refuse_other_meanings,
 )
 
 V = TypeVar("V")
@@ -81,13 +82,10 @@ class AtAngles:
 
     def __init_subclass__(cls) -> None:
         # a column of several parts is an attribute for each of them
-        for row in (
-            row
-            for item in list(vars(cls).values())
-            if isinstance(item, ForEach)
-            for row in item.rows
-        ):
-            setattr(cls, row.quantity.id, property(row.of, doc=row.quantity.text))
+        for item in list(vars(cls).values()):
+            if isinstance(item, ForEach):
+                for row in item.rows:
+                    setattr(cls, row.quantity.id, property(row.of, doc=row.quantity.text))
 
     @property
     def rows(self) -> Mapping[str, QuantityRow]:
@@ -108,44 +106,48 @@ def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mappin
     if (state, offers) in _COLUMN_ROWS:
         return _COLUMN_ROWS[state, offers]
     rows = list[QuantityRow]()
-    for owner in (one for one in reversed(state.__mro__) if issubclass(one, AtAngles)):
+    for owner in reversed(state.__mro__):
+        if not issubclass(owner, AtAngles):
+            continue
         for item in vars(owner).values():
-            for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
-                own = row.quantity.commands == ITS_OWN
-                rows.append(
-                    row._replace(quantity=row.quantity._replace(commands=owner.commands))
-                    if own
-                    else row
-                )
-    rows += [QuantityRow(offer.quantity, offer.of, offer.unless) for offer in offers]
-    over_phi = dict.fromkeys(word for row in rows for word in row.quantity.commands)
-    every = _in_order(
-        [QuantityRow(PHI._replace(commands=tuple(over_phi)), lambda one: one.phi), *rows]
-    )
-    return _COLUMN_ROWS.setdefault((state, offers), every)
+            if isinstance(item, (Computed, ForEach)):
+                rows += (_with_commands(row, owner.commands) for row in item.rows)
+    rows += (QuantityRow(offer.quantity, offer.of, offer.unless) for offer in offers)
+
+    # the angle is a column of every command that has another
+    commands = dict.fromkeys(word for row in rows for word in row.quantity.commands)
+    phi = QuantityRow(PHI._replace(commands=tuple(commands)), lambda state: state.phi)
+    return _COLUMN_ROWS.setdefault((state, offers), _in_order([phi, *rows], state))
 
 
-def _in_order(rows: Iterable[QuantityRow]) -> dict[str, QuantityRow]:
+def _with_commands(row: QuantityRow, commands: tuple[str, ...]) -> QuantityRow:
+    """Return a row with the commands of its class, if it has none of its own."""
+    if row.quantity.commands != ITS_OWN:
+        return row
+    return row._replace(quantity=row.quantity._replace(commands=commands))
+
+
+def _in_order(rows: Sequence[QuantityRow], owner: type) -> dict[str, QuantityRow]:
     """Return rows by id in the order in which they are printed, the first of those with one id.
 
-    Several `after` the same one keep their order; one without a heading has that of the one before it.
+    Several `after` the same one keep their order; one without a heading has that of the one before it. Raises TypeError
+    for an id that has two meanings.
     """
-    found: dict[str, QuantityRow] = {}
+    refuse_other_meanings({}, (row.quantity for row in rows), owner.__name__)
+    by_id: dict[str, QuantityRow] = {}
     for row in rows:
-        found.setdefault(row.quantity.id, row)
-
-    def follows(quantity: Quantity) -> bool:
-        return quantity.after in found
-
-    ordered = [row.quantity for row in found.values() if not follows(row.quantity)]
-    for quantity in (row.quantity for row in found.values() if follows(row.quantity)):
-        place = [other.id for other in ordered].index(quantity.after) + 1
-        while place < len(ordered) and ordered[place].after == quantity.after:
-            place += 1
-        ordered.insert(
-            place, quantity._replace(heading=quantity.heading or ordered[place - 1].heading)
-        )
-    return {quantity.id: found[quantity.id]._replace(quantity=quantity) for quantity in ordered}
+        by_id.setdefault(row.quantity.id, row)
+    quantities = [row.quantity for row in by_id.values()]
+    ordered = [quantity for quantity in quantities if quantity.after not in by_id]
+    for quantity in quantities:
+        if quantity.after not in by_id:
+            continue
+        index = [other.id for other in ordered].index(quantity.after) + 1
+        while index < len(ordered) and ordered[index].after == quantity.after:
+            index += 1
+        heading = quantity.heading or ordered[index - 1].heading
+        ordered.insert(index, quantity._replace(heading=heading))
+    return {quantity.id: by_id[quantity.id]._replace(quantity=quantity) for quantity in ordered}
 
 
 # key values
@@ -164,14 +166,14 @@ class Rows(NamedTuple):
 
     def changed(self, change: Callable[[Quantity], Quantity]) -> Rows:
         """Return the rows with other quantities."""
-        found = (
-            {id: row._replace(quantity=change(row.quantity)) for id, row in rows.items()}
-            for rows in self
-        )
-        return Rows(*found)
+
+        def changed_rows(rows: Mapping[str, QuantityRow]) -> dict[str, QuantityRow]:
+            return {id: row._replace(quantity=change(row.quantity)) for id, row in rows.items()}
+
+        return Rows(*map(changed_rows, self))
 
 
-Door = Callable[[], "type[Results]"]
+ResultsDoor = Callable[[], "type[Results]"]
 """A function with one import inside, that of the class it returns."""
 
 
@@ -181,12 +183,12 @@ class PartResults(Computed[V]):
     def __init__(
         self,
         function: Of[V],
-        kind: type[Results] | Door,
+        kind: type[Results] | ResultsDoor,
         unless: ResultCondition | None,
         there: ResultCondition | None,
     ) -> None:
         super().__init__(function, Quantity("", "", "", function.__doc__ or ""))
-        self._door: Door = (lambda: kind) if isinstance(kind, type) else kind
+        self._door: ResultsDoor = (lambda: kind) if isinstance(kind, type) else kind
         self.unless, self.there = unless, there
 
     @cached_property
@@ -198,18 +200,19 @@ class PartResults(Computed[V]):
         """Yield the rows of the part for the results that it is a part of; None where they have no such part."""
 
         def of_part(function: Formula, results: object) -> Any:
-            found = self.__get__(results)
-            return None if found is None else function(found)
+            part = self.__get__(results)
+            return None if part is None else function(part)
 
-        for quantity, of, unless, repeats in rows:
-            adds_nothing = self.unless or (unless and partial(of_part, unless))
-            yield QuantityRow(
-                quantity, partial(of_part, of), adds_nothing, repeats and partial(of_part, repeats)
-            )
+        for row in rows:
+            unless = self.unless
+            if unless is None and row.unless:
+                unless = partial(of_part, row.unless)
+            repeats = row.repeats and partial(of_part, row.repeats)
+            yield QuantityRow(row.quantity, partial(of_part, row.of), unless, repeats)
 
 
 def part(
-    kind: type[Results] | Door,
+    kind: type[Results] | ResultsDoor,
     unless: ResultCondition | None = None,
     there: ResultCondition | None = None,
 ) -> Callable[[Of[V]], PartResults[V]]:
@@ -225,17 +228,17 @@ class ExtremesOfColumns:
     """The place of the extremes of columns among the key values of a class; without it they are printed last."""
 
     ENDS: ClassVar[dict[str, Callable[[Extremes], Extreme]]] = {
-        "max": lambda both: both.largest,
-        "min": lambda both: both.smallest,
-        "peak": lambda both: both.peak,
+        "max": lambda extremes: extremes.largest,
+        "min": lambda extremes: extremes.smallest,
+        "peak": lambda extremes: extremes.peak,
     }
 
     def rows(self, columns: Iterable[Quantity]) -> Iterator[QuantityRow]:
         """Yield the key values that are extremes of columns, of results that have `extremes_of(id)`."""
 
         def extreme(column: str, end: str, results: Any) -> Extreme | None:
-            found = results.extremes_of(column)
-            return None if found is None else self.ENDS[end](found)
+            extremes = results.extremes_of(column)
+            return None if extremes is None else self.ENDS[end](extremes)
 
         def repeats(column: str, end: str, results: Any) -> bool:
             # the largest magnitude is that of the largest or the smallest value
@@ -243,9 +246,10 @@ class ExtremesOfColumns:
 
         for column in columns:
             for end in self.ENDS if column.peak else ("max", "min"):
-                names = column.id, end
                 yield QuantityRow(
-                    column.extreme(end), partial(extreme, *names), repeats=partial(repeats, *names)
+                    column.extreme(end),
+                    partial(extreme, column.id, end),
+                    repeats=partial(repeats, column.id, end),
                 )
 
 
@@ -309,10 +313,12 @@ class Results(NotebookView):
 
     def key_values(self) -> dict[str, Figure]:
         """Return every key value that there is by its id, in the order in which they are printed."""
-        found = ((row.quantity, row.of(self)) for row in self.rows.key_values.values())
-        return {
-            quantity.id: _figure(quantity, value) for quantity, value in found if value is not None
-        }
+        figures = {}
+        for row in self.rows.key_values.values():
+            value = row.of(self)
+            if value is not None:
+                figures[row.quantity.id] = _figure(row.quantity, value)
+        return figures
 
     def columns(self, degrees: object, *names: str) -> dict[str, Array]:
         """Return φ and these columns (n,), or all that there are, in SI by id, at crank angles (n,) in degrees.
@@ -320,8 +326,8 @@ class Results(NotebookView):
         names: ids or printed symbols. Raises UsageError for angles that are no numbers and for what is no column here.
         """
         angles = np.atleast_1d(crank_angles(degrees))
-        state, every = self.at(angles), self.rows.columns
-        known = {id: row for id, row in every.items() if self.command in row.quantity.commands}
+        state = self.at(angles)
+        known = self._own_columns
         rows = [_only(name, known, "column") for name in names] if names else known.values()
         found: dict[str, Array] = {"phi": angles}
         for row in rows:
@@ -331,6 +337,12 @@ class Results(NotebookView):
             elif names:
                 raise UsageError(f"this machine has no {row.quantity.id}: {row.quantity.text}")
         return found
+
+    @cached_property
+    def _own_columns(self) -> dict[str, QuantityRow]:
+        """The rows of the columns of this command, by id."""
+        columns = self.rows.columns
+        return {id: row for id, row in columns.items() if self.command in row.quantity.commands}
 
     def at(self, degrees: object, within: Array | None = None) -> Any:
         """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
@@ -421,7 +433,9 @@ def result_rows(
     for offer in key_offers:
         if kind.command in offer.quantity.commands:
             found.append(QuantityRow(offer.quantity.printed_by(kind.command), offer.of))
-    return _ROWS.setdefault((kind, offers, key_offers, closed), Rows(columns, _in_order(found)))
+    return _ROWS.setdefault(
+        (kind, offers, key_offers, closed), Rows(columns, _in_order(found, kind))
+    )
 
 
 def result(values: Array, count: int | None) -> Any:
@@ -443,7 +457,9 @@ def crank_angles(degrees: object) -> Array:
 
 
 def _only(name: str, known: Mapping[str, QuantityRow], what: str) -> QuantityRow:
-    """Return the one row that a name means; raises UsageError for none and for several."""
+    """Return the one row that a name means, its id first; raises UsageError for none and for several."""
+    if name in known:
+        return known[name]
     found = called(name, (row.quantity for row in known.values()))
     if len(found) != 1:
         raise UsageError(

@@ -116,12 +116,11 @@ class TurningState(AtAngles):
 
     def course(self, id: str) -> Array | None:
         """Return a quantity of `MachineTurning.samples_of` at the angles, (n,); None for what is left out."""
-        found = self._turning.samples_of(id)
-        return (
-            None
-            if found is None
-            else self._turning.effort.at(*found, self.phi, self.within, self._machine)
-        )
+        samples = self._turning.samples_of(id)
+        if samples is None:
+            return None
+        pieces, values = samples
+        return self._turning.effort.at(pieces, values, self.phi, self.within, self._machine)
 
 
 class MachineTurning(Results):
@@ -137,13 +136,15 @@ class MachineTurning(Results):
 
     def __init__(self, effort: TurningEffort) -> None:
         self.effort, self.machine, self.excess = effort, effort.machine, effort.excess
-        self.omega, self.turns = effort.omega, effort.omega is not None and some(effort.omega != 0)
-        self.crank = self.machine.cylinders[0].mechanism.crank if self.machine.cylinders else None
+        self.omega = effort.omega
+        self.turns = effort.omega is not None and some(effort.omega != 0)
+        cylinders = self.machine.cylinders
+        self.crank = cylinders[0].mechanism.crank if cylinders else None
         self._extremes: dict[str, Extremes | None] = {}
         wheel = self.machine.flywheel
-        self._given, self._wanted, self.rim = (
-            (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
-        )
+        self._given = wheel.inertia if wheel else None
+        self._wanted = wheel.fluctuation if wheel else None
+        self.rim = wheel.rim if wheel else None
         self.law = SpeedLaw.of(effort)
         if effort.count is not None:
             _ = self.natural_order  # refuses machines of a batch before any result is read
@@ -164,11 +165,9 @@ class MachineTurning(Results):
             case "T":
                 return self._at_crank(effort.M)
             case "T_inertia":
-                return (
-                    self._at_crank(effort.sampled(effort.inertia_terms))
-                    if effort.inertia_terms
-                    else None
-                )
+                if not effort.inertia_terms:
+                    return None
+                return self._at_crank(effort.sampled(effort.inertia_terms))
             case "E":
                 return effort.pieces, self.excess.E
             case "M_load":
@@ -188,20 +187,20 @@ class MachineTurning(Results):
 
     def _from_others(self, column: str) -> tuple[Pieces, Array] | None:
         """Return a column that is computed from other columns, on pieces halved until it is a polynomial."""
-        row, start = self.rows.columns.get(column), np.zeros(1)
+        row = self.rows.columns.get(column)
+        start = np.zeros(1)
         if row is None or row.of(self.state(self, start, start)) is None:
             return None
 
         def sample(pieces: Pieces) -> Array:
-            shape, machine = pieces.degrees.shape, np.tile(pieces.machine, len(pieces.degrees))
+            shape = pieces.degrees.shape
+            machine = np.tile(pieces.machine, len(pieces.degrees))
             within = np.broadcast_to(pieces.middle, shape).ravel()
-            return row.of(self.state(self, pieces.degrees.ravel(), within, machine)).reshape(
-                1, *shape
-            )
+            state = self.state(self, pieces.degrees.ravel(), within, machine)
+            return row.of(state).reshape(1, *shape)
 
-        pieces, (values,) = refined(
-            self.effort.pieces if self.speed is None else self.speed.pieces, sample
-        )
+        coarse = self.effort.pieces if self.speed is None else self.speed.pieces
+        pieces, (values,) = refined(coarse, sample)
         return pieces, values
 
     @property
@@ -211,17 +210,19 @@ class MachineTurning(Results):
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
-        found = self.samples_of(column)
-        return None if found is None else where_is(*found, value)
+        samples = self.samples_of(column)
+        return None if samples is None else where_is(*samples, value)
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
         if column not in self._extremes:
-            found = self.samples_of(column)
+            samples = self.samples_of(column)
             result = self.speed.result if column == "alpha" and self.speed else self.effort.result
-            self._extremes[column] = (
-                None if found is None else found[0].extremes(found[1][None]).each(result)[0]
-            )
+            extremes = None
+            if samples is not None:
+                pieces, values = samples
+                extremes = pieces.extremes(values[None]).each(result)[0]
+            self._extremes[column] = extremes
         return self._extremes[column]
 
     # turning effort
@@ -237,25 +238,29 @@ class MachineTurning(Results):
         "W",
         "force",
         "Mean tangential force over the cycle: the resistance",
-        lambda one: None if one.crank is None else one.M_mean / one.crank,
+        lambda turning: None if turning.crank is None else turning.M_mean / turning.crank,
     )
     M_mean = value(
         "M_m",
         "torque",
         "Mean torque of the turning effort, equal to the resistance",
-        lambda one: one.effort.result(one.effort.mean) if one.knows_mean else None,
+        lambda turning: turning.effort.result(turning.effort.mean) if turning.knows_mean else None,
     )
     work_shaft = value(
         "A",
         "energy",
         "Work of the turning effort per cycle",
-        lambda one: one.M_mean * math.radians(one.effort.cycle) if one.knows_mean else None,
+        lambda turning: (
+            turning.M_mean * math.radians(turning.effort.cycle) if turning.knows_mean else None
+        ),
     )
     power_shaft = value(
         "N_e",
         "power",
         "Power at the shaft, mean torque times nominal angular velocity",
-        lambda one: one.M_mean * one.omega if one.turns and one.knows_mean else None,
+        lambda turning: (
+            turning.M_mean * turning.omega if turning.turns and turning.knows_mean else None
+        ),
     )
 
     @part(TotalWork)
@@ -277,8 +282,10 @@ class MachineTurning(Results):
     @property
     def deficit(self) -> Any:
         """Mean torque less the mean of a load torque given by points, in N m; None where they agree."""
-        found = self.effort.deficit
-        return self.effort.result(np.where(found == 0, np.nan, found)) if found.any() else None
+        deficit = self.effort.deficit
+        if not deficit.any():
+            return None
+        return self.effort.result(np.where(deficit == 0, np.nan, deficit))
 
     # excess work
 
@@ -287,14 +294,14 @@ class MachineTurning(Results):
         "φ_T=W",
         "angle",
         "Crank angles at which the effort crosses the resistance",
-        lambda one: one.of_crossings(one.excess.crossings.degrees),
+        lambda turning: turning.of_crossings(turning.excess.crossings.degrees),
         listed=True,
     )
     lobes = value(
         "A_1, A_2, …",
         "energy",
         "Excess work of each lobe, from crossing to crossing",
-        lambda one: one.of_crossings(one.excess.lobes),
+        lambda turning: turning.of_crossings(turning.excess.lobes),
         plain="A_1, ...",
         listed=True,
     )
@@ -302,19 +309,19 @@ class MachineTurning(Results):
         "E_max",
         "energy",
         "Largest excess work since angle 0",
-        lambda one: one.summits and one.summits.largest,
+        lambda turning: turning.summits and turning.summits.largest,
     )
     E_min = value(
         "E_min",
         "energy",
         "Smallest excess work since angle 0",
-        lambda one: one.summits and one.summits.smallest,
+        lambda turning: turning.summits and turning.summits.smallest,
     )
     dE = value(
         "ΔE",
         "energy",
         "Fluctuation of energy: largest minus smallest excess work",
-        lambda one: one.effort.result(one.excess.dE),
+        lambda turning: turning.effort.result(turning.excess.dE),
     )
 
     @key_value("ΔE/A", "ratio")
@@ -324,7 +331,9 @@ class MachineTurning(Results):
         None where no work is done, nan for such a machine of many.
         """
         work = self.work_shaft if self.knows_mean else 0.0
-        return self.dE / where(work > 0, work, math.nan) if some(work > 0) else None
+        if not some(work > 0):
+            return None
+        return self.dE / where(work > 0, work, math.nan)
 
     def of_crossings(self, values: Array) -> Any:
         """Return one value per crossing of torque and load as a tuple, or a tuple per machine; None where not known."""
@@ -344,65 +353,73 @@ class MachineTurning(Results):
         "J",
         "inertia",
         "Moment of inertia of the flywheel: as given, else as required for the given δ",
-        lambda one: one.J_needed if one._given is None else one._given,
+        lambda turning: turning.J_needed if turning._given is None else turning._given,
     )
     GD2 = value(
         "GD²",
         "gd2",
         "Flywheel effect GD² = 4gJ, weight times diameter squared",
-        lambda one: None if one.J is None else 4 * one.J,
+        lambda turning: None if turning.J is None else 4 * turning.J,
         plain="GD2",
     )
     J_needed = value(
         "J_δ",
         "inertia",
         "Moment of inertia required for δ, ΔE/(δ ω²)",
-        lambda one: one.textbook_inertia(),
-        unless=lambda one: one.is_the_needed,
+        lambda turning: turning.textbook_inertia(),
+        unless=lambda turning: turning.is_the_needed,
     )
     GD2_needed = value(
         "GD²_δ",
         "gd2",
         "The same as flywheel effect GD² = 4gJ",
-        lambda one: None if one.J_needed is None else 4 * one.J_needed,
+        lambda turning: None if turning.J_needed is None else 4 * turning.J_needed,
         plain="GD2_delta",
-        unless=lambda one: one.is_the_needed,
+        unless=lambda turning: turning.is_the_needed,
     )
 
     @key_value("A_K", "area")
     def rim_section(self) -> Number | None:
         """Cross-section of the rim required for δ, or for J: 4 J/(π ρ D (D² + h²))."""
-        wanted = self.J if self.J_needed is None else self.J_needed
-        return None if self.rim is None or wanted is None else self.rim.section(wanted)
+        inertia = self.J if self.J_needed is None else self.J_needed
+        if self.rim is None or inertia is None:
+            return None
+        return self.rim.section(inertia)
 
     rim_speed = value(
         "v_K",
         "velocity",
         "Rim speed at the mean diameter",
-        lambda one: one.rim.speed(one.omega) if one.rim and one.turns else None,
+        lambda turning: turning.rim.speed(turning.omega) if turning.rim and turning.turns else None,
     )
     rim_stress = value(
         "σ_K",
         "stress",
         "Hoop stress of the rim, ρ v²",
-        lambda one: one.rim.stress(one.omega) if one.rim and one.turns else None,
+        lambda turning: (
+            turning.rim.stress(turning.omega) if turning.rim and turning.turns else None
+        ),
     )
 
     @property
     def is_the_needed(self) -> bool:
         """Whether J is J_δ: no other moment of inertia is given."""
-        return self._given is None or (
-            self.J_needed is not None and every(self.J_needed == self._given)
-        )
+        if self._given is None:
+            return True
+        return self.J_needed is not None and every(self.J_needed == self._given)
 
     def textbook_inertia(self) -> Number | None:
         """Return ΔE/(δ ω²) in kg m², less the inertia beyond a rigid coupling; None without a required δ or a speed."""
         if self._wanted is None or not self.turns:
             return None
-        driven = self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
-        return self.effort.result(
-            np.maximum(self.excess.dE / (self._wanted * self.omega**2) - driven, 0.0)
-        )
+        needed = self.excess.dE / (self._wanted * self.omega**2)
+        return self.effort.result(np.maximum(needed - self._driven_inertia, 0.0))
+
+    @property
+    def _driven_inertia(self) -> Number:
+        """Inertia beyond a rigid coupling in kg m², which turns with the flywheel; 0 without one."""
+        coupling = self.machine.coupling
+        return coupling.inertia if coupling and self.rigid else 0.0
 
     # speed line
 
@@ -424,8 +441,7 @@ class MachineTurning(Results):
     @key_value("δ_0", "ratio", after="delta")
     def delta_book(self) -> Number | None:
         """The same by the textbook formula, ΔE/(J ω²)."""
-        driven = self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
-        inertia = (0.0 if self.J is None else self.J) + driven
+        inertia = (0.0 if self.J is None else self.J) + self._driven_inertia
         if not self.turns or not some(inertia != 0):
             return None
         return self.dE / (where(inertia == 0, math.nan, inertia) * self.omega**2)
@@ -438,8 +454,8 @@ class MachineTurning(Results):
         """
         if self.law is None or not self.speed:
             return None
-        found = np.exp(np.minimum(self.speed.growth, _LARGEST_EXPONENT))
-        return float(found) if self.effort.count is None else found
+        multiplier = np.exp(np.minimum(self.speed.growth, _LARGEST_EXPONENT))
+        return float(multiplier) if self.effort.count is None else multiplier
 
     @property
     def load_ignored(self) -> bool:
@@ -461,15 +477,15 @@ class MachineTurning(Results):
         if coupling and not self._needs_no_inertia:
             from kurbel.solver.chapters.coupling import ElasticCoupling, natural_order
 
-            own = np.asarray(flywheel + effort.pieces.mean(effort.J_moving))
-            if effort.count is None and not own[0]:
+            ahead = np.asarray(flywheel + effort.pieces.mean(effort.J_moving))
+            if effort.count is None and not ahead[0]:
                 raise UsageError(
                     "nothing ahead of the coupling has inertia: give 'flywheel' an inertia"
                 )
-            if some(natural_order(coupling, own, self.omega) <= RIGID_ABOVE):
-                return ElasticCoupling(effort, own, self.law)
-        whole = np.asarray(flywheel + (coupling.inertia if coupling else 0.0), dtype=float)
-        return RigidLine(effort, self.law, np.broadcast_to(whole, effort.mean.shape))
+            if some(natural_order(coupling, ahead, self.omega) <= RIGID_ABOVE):
+                return ElasticCoupling(effort, ahead, self.law)
+        turning = np.asarray(flywheel + (coupling.inertia if coupling else 0.0), dtype=float)
+        return RigidLine(effort, self.law, np.broadcast_to(turning, effort.mean.shape))
 
     def _delta_with(self, flywheel: float) -> float:
         """Return δ of the speed line with a flywheel in kg m²; inf where the machine stalls."""
@@ -480,10 +496,10 @@ class MachineTurning(Results):
 
     def _stalled(self, flywheel: float, stop: Unsettled) -> NoSolutionError:
         """Return a message: at which angle the machine stalls, and the smallest flywheel found with which it runs."""
-        elastic = self.natural_order is not None and not self.rigid
-        with_this = (
-            f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
-        )
+        is_elastic = self.natural_order is not None and not self.rigid
+        with_this = f"with J = {show(flywheel, 'inertia')}"
+        if is_elastic:
+            with_this += " and the elastic coupling"
         message = f"{with_this} no periodic motion is found under this load"
         if stop.degrees is not None:
             message = f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy is used up"
@@ -509,7 +525,10 @@ class MachineTurning(Results):
 
         moving = float(self.effort.pieces.mean(self.effort.J_moving)[0])
         least = max(flywheel, 1e-6 * moving, 1e-300)
-        enough = flywheel + 2 * more / self.omega**2 if more else least + self.dE / self.omega**2
+        if more:
+            enough = flywheel + 2 * more / self.omega**2
+        else:
+            enough = least + self.dE / self.omega**2
         for _ in range(_DOUBLINGS):
             if math.isfinite(self._delta_with(rounded_up(enough))):
                 break
@@ -518,8 +537,10 @@ class MachineTurning(Results):
             return None
         while not more and enough > 1.02 * max(least, enough / 1000):
             middle = math.sqrt(max(least, enough / 4) * enough)
-            turns = math.isfinite(self._delta_with(rounded_up(middle)))
-            least, enough = (least, middle) if turns else (middle, enough)
+            if math.isfinite(self._delta_with(rounded_up(middle))):
+                enough = middle
+            else:
+                least = middle
         return rounded_up(enough)
 
     # coupling
@@ -527,24 +548,22 @@ class MachineTurning(Results):
     @key_value("n_e", "ratio")
     def natural_order(self) -> Number | None:
         """Natural frequency of the coupled masses, relative to the angular velocity."""
-        if (
-            self.machine.coupling is None
-            or not self.turns
-            or (self._given is None and self._wanted is None)
-        ):
+        coupling = self.machine.coupling
+        has_inertia = self._given is not None or self._wanted is not None
+        if coupling is None or not self.turns or not has_inertia:
             return None
-        needed = (
-            self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
-        )
-        own = np.asarray(needed + self.effort.pieces.mean(self.effort.J_moving))
-        if not every(own != 0):
+        flywheel = self._given
+        if flywheel is None:
+            flywheel = self.excess.dE / (self._wanted * self.omega**2)
+        ahead = np.asarray(flywheel + self.effort.pieces.mean(self.effort.J_moving))
+        if not every(ahead != 0):
             return None
         from kurbel.solver.chapters.coupling import natural_order
 
-        found = natural_order(self.machine.coupling, own, self.omega)
-        if not every(found > RIGID_ABOVE):  # in a batch machines with a rigid coupling are left out
-            self.effort.refused |= found > RIGID_ABOVE
-        return self.effort.result(found)
+        order = natural_order(coupling, ahead, self.omega)
+        if not every(order > RIGID_ABOVE):  # in a batch machines with a rigid coupling are left out
+            self.effort.refused |= order > RIGID_ABOVE
+        return self.effort.result(order)
 
     @property
     def rigid(self) -> bool:
@@ -593,9 +612,8 @@ class MachineTurning(Results):
         """Whether δ with the flywheel J_δ differs noticeably from the required one; of many machines, for any."""
         if self._wanted is None or self.delta_needed is None:
             return False
-        return some(
-            (self.delta_needed != 0) & (abs(self.delta_needed / self._wanted - 1) > _MISSED)
-        )
+        missed_by = abs(self.delta_needed / self._wanted - 1)
+        return some((self.delta_needed != 0) & (missed_by > _MISSED))
 
     @key_value("J_δ,ω", "inertia", after="rim_stress", heading="Flywheel")
     def J_exact(self) -> Any:
@@ -608,7 +626,8 @@ class MachineTurning(Results):
         if self.effort.count is not None:
             return np.full(self.effort.count, np.nan)
         # secant method: required δ/δ − 1 is nearly J/J_δ − 1
-        inertia, missed = self.J_needed, self._wanted / self.delta_needed - 1
+        inertia = self.J_needed
+        missed = self._wanted / self.delta_needed - 1
         slope = 1 / inertia
         for _ in range(_TRIALS):
             tried = min(max(inertia - missed / slope, inertia / 4), 4 * inertia)
@@ -618,9 +637,10 @@ class MachineTurning(Results):
                 return None
             rise = (left - missed) / (tried - inertia)
             slope = rise if rise > 0 else 1 / tried
-            inertia, missed, before = tried, left, missed
-            if abs(left * before) <= _CLOSE:
-                return inertia - left / slope
+            is_close = abs(left * missed) <= _CLOSE
+            inertia, missed = tried, left
+            if is_close:
+                return inertia - missed / slope
         return None
 
 
@@ -639,16 +659,20 @@ class DeadCentre(Results):
         At the end of the stroke steam and pump both oppose the motion, and the parts before the pump must carry their
         sum (R p. 613). None if the cylinder does not both drive and drive a pump.
         """
-        forces, drive, count = self.forces, self.forces.drive, self.forces.drive.count or 1
+        forces, drive = self.forces, self.forces.drive
+        count = drive.count or 1
         driving, driven = forces.work_driving, forces.work_driven
-        both = np.asarray(driving is not None and (driving > 0) & (driven < 0))
-        if not both.any():
+        drives_a_pump = np.asarray(driving is not None and (driving > 0) & (driven < 0))
+        if not drives_a_pump.any():
             return None
+
+        # just before and just after each dead centre
         centres = every_dead_centre(drive.mechanism, count, drive.cycle)
         angles = np.repeat(centres, 2, axis=1)
         sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
         machine = np.repeat(np.arange(count), angles.shape[1])
-        values = State.at(drive, angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
+        state = State.at(drive, angles.ravel(), sides.ravel(), machine)
+        values = state.P_gas.reshape(angles.shape)
         largest = np.arange(count), np.abs(values).argmax(axis=1)
-        found = np.where(both, values[largest], np.nan), np.mod(angles[largest], self._cycle)
-        return Extreme(*map(forces.result, found))
+        force = np.where(drives_a_pump, values[largest], np.nan)
+        return Extreme(forces.result(force), forces.result(np.mod(angles[largest], self._cycle)))

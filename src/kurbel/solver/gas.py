@@ -14,6 +14,7 @@ A measured trace is in `kurbel.traces.pressure`. The force is P = p_H A_H − p_
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, ClassVar, Literal, Union
@@ -68,17 +69,15 @@ class Process:
         """∮ p dz in Pa in closed form; straight lines in whole numbers: cards of nearly no area lose no digits."""
         straight, curved = 0, list[float]()
         for _, z, p, next_z, next_p, exponent in self.lines.tolist():
-            if not exponent:
-                whole = [int(math.ldexp(one, _BITS)) for one in (p, next_p, z, next_z)]
-                straight += (whole[0] + whole[1]) * (whole[3] - whole[2])
-                continue
-            grown = float(growth(z, next_z - z, self.clearance))
-            u = (1 - exponent) * grown
-            mean = math.expm1(u) / u if u else 1.0
-            curved += [
-                (p + self.lift) * (z + self.clearance) * grown * mean,
-                -self.lift * (next_z - z),
-            ]
+            if exponent:
+                grown = float(growth(z, next_z - z, self.clearance))
+                u = (1 - exponent) * grown
+                mean = math.expm1(u) / u if u else 1.0
+                curved.append((p + self.lift) * (z + self.clearance) * grown * mean)
+                curved.append(-self.lift * (next_z - z))
+            else:
+                heights = _in_bits(p) + _in_bits(next_p)
+                straight += heights * (_in_bits(next_z) - _in_bits(z))
         return math.fsum((math.ldexp(straight, -2 * _BITS - 1), *curved))
 
 
@@ -99,6 +98,11 @@ ProcessLine = tuple[int, float, float, float, float, float]
 """One of the lines of a `Process`."""
 
 
+def _in_bits(number: float) -> int:
+    """Return a number as a multiple of the smallest step that cards are computed in."""
+    return int(math.ldexp(number, _BITS))
+
+
 def process_in(
     chamber: Card | Rectangle | IdealCard,
     lift: float = 0.0,
@@ -109,37 +113,41 @@ def process_in(
 
     lift: to be added to its pressures for absolute, base: to be subtracted for gauge pressures, in Pa; cycle: degrees.
     """
-    clearance, lines = math.inf, list[ProcessLine]()
+    clearance = math.inf
     if isinstance(chamber, Card):
-        curved = chamber.interpolate != "linear" and chamber.clearance is not None
-        clearance = chamber.clearance if curved and chamber.clearance is not None else math.inf
-        for stroke, line in enumerate(chamber.lines):
-            for (z, p), (next_z, next_p) in pairwise(zip(line.fractions, line.pressures)):
-                exponent = 0.0
-                if curved and next_z != z:
-                    exponent = math.log((p + lift) / (next_p + lift)) / float(
-                        growth(z, next_z - z, clearance)
-                    )
-                lines.append((stroke, z, p, next_z, next_p, exponent))
-    elif isinstance(
-        chamber, Rectangle
-    ):  # the mean pressure is that of the stroke that drives, or is driven
-        level = base if chamber.level is None else chamber.level
-        above = {"expansion": max(chamber.mean, 0.0), "compression": max(-chamber.mean, 0.0)}
-        names = next(names for word, names in STROKES.items() if 360.0 * CYCLES[word] == cycle)
-        for stroke, name in enumerate(names):
-            pressure = level + above.get(name, 0.0)
-            lines.append(
-                (stroke, float(stroke % 2), pressure, float(1 - stroke % 2), pressure, 0.0)
-            )
+        if chamber.interpolate != "linear" and chamber.clearance is not None:
+            clearance = chamber.clearance
+        lines = list(_drawn_lines(chamber, lift, clearance))
+    elif isinstance(chamber, Rectangle):
+        lines = list(_level_lines(chamber, cycle, base))
     else:
         from kurbel.solver.ideal_process import ideal_lines
 
-        clearance, (lift, lines) = (
-            chamber.clearance,
-            ideal_lines(chamber, lift, four_stroke=cycle == 720.0),
-        )
-    return Process(np.array([line for line in lines if line[3] != line[1]]), lift, clearance)
+        clearance = chamber.clearance
+        lift, lines = ideal_lines(chamber, lift, four_stroke=cycle == 720.0)
+    with_width = [line for line in lines if line[3] != line[1]]
+    return Process(np.array(with_width), lift, clearance)
+
+
+def _drawn_lines(card: Card, lift: float, clearance: float) -> Iterator[ProcessLine]:
+    """Yield the lines between the points of a card: straight, or polytropes where its clearance is known."""
+    for stroke, line in enumerate(card.lines):
+        for (z, p), (next_z, next_p) in pairwise(zip(line.fractions, line.pressures)):
+            exponent = 0.0
+            if next_z != z and not math.isinf(clearance):
+                fall = math.log((p + lift) / (next_p + lift))
+                exponent = fall / float(growth(z, next_z - z, clearance))
+            yield stroke, z, p, next_z, next_p, exponent
+
+
+def _level_lines(rectangle: Rectangle, cycle: float, base: float) -> Iterator[ProcessLine]:
+    """Yield a level line for each stroke; the mean pressure is that of the stroke that drives, or is driven."""
+    level = base if rectangle.level is None else rectangle.level
+    above = {"expansion": max(rectangle.mean, 0.0), "compression": max(-rectangle.mean, 0.0)}
+    names = next(names for word, names in STROKES.items() if 360.0 * CYCLES[word] == cycle)
+    for stroke, name in enumerate(names):
+        pressure = level + above.get(name, 0.0)
+        yield stroke, float(stroke % 2), pressure, float(1 - stroke % 2), pressure, 0.0
 
 
 # over the crank angle
@@ -161,34 +169,32 @@ class CardPressure:
         count: int | None,
         mirrored: CardPressure | None,
     ) -> None:
-        self.setting, self._count, cycle = setting, count, setting.cycle
-        known = (
-            (mirrored._processes, mirrored._which)
-            if mirrored
-            else _processes(chamber, setting, count)
-        )
-        self._processes: list[Process] = known[0]
-        self._which: Indices = known[1]
+        self.setting, self._count = setting, count
+        cycle = setting.cycle
+        self._processes: list[Process]
+        self._which: Indices
+        if mirrored:
+            self._processes = mirrored._processes
+            self._which = mirrored._which
+        else:
+            self._processes, self._which = _processes(chamber, setting, count)
 
         # lines at the same angles in all machines are kept once
         alike = self._alike = len(self._processes) == 1 and not varies(setting.mechanism)
-        own = self._which[:1] if alike else self._which
-        self._machine, rows = _over_the_angle(self._processes, own, setting, alike)
+        which = self._which[:1] if alike else self._which
+        self._machine, rows = _over_the_angle(self._processes, which, setting, alike)
         self._begins, self._ends, z, p, next_z, self._next_p, exponent = rows
-        self._p, self._rows = (
-            p,
-            np.stack((z, p, next_z, exponent, (self._next_p - p) / (next_z - z), *rows[:2])),
-        )
+        self._p = p
+        rise = (self._next_p - p) / (next_z - z)
+        self._rows = np.stack((z, p, next_z, exponent, rise, self._begins, self._ends))
         self._keys = self._machine * (2 * cycle) + self._begins
-        self._first = np.searchsorted(self._machine, np.arange(len(own)))
+        self._first = np.searchsorted(self._machine, np.arange(len(which)))
         self._straight = not exponent.any()
         self._level = self._straight and np.array_equal(p, self._next_p)
         self.steep = bool((np.abs(next_z - z) < _STEEP).any())
         machines = count if alike and count else 1
-        self.starts = Angles(
-            np.repeat(np.arange(machines), len(z)) if alike else self._machine,
-            np.tile(self._begins, machines),
-        )
+        machine = np.repeat(np.arange(machines), len(z)) if alike else self._machine
+        self.starts = Angles(machine, np.tile(self._begins, machines))
 
     @property
     def area(self) -> Number:
@@ -202,12 +208,13 @@ class CardPressure:
         best = np.maximum.reduceat(np.maximum(self._p, self._next_p), self._first)
         until = np.where(self._ends > self._begins, self._ends, self._ends + self.setting.cycle)
         level = best[self._machine]
-        angles = np.where(
-            self._p == level, self._begins, np.where(self._next_p == level, until, np.inf)
-        )
+        at_end = np.where(self._next_p == level, until, np.inf)
+        angles = np.where(self._p == level, self._begins, at_end)
         first = np.minimum.reduceat(angles, self._first)
-        whole = np.broadcast_arrays(best - self.setting.base, first, np.empty(self._count or 1))
-        return Extreme(*(result(one, self._count) for one in whole[:2]))
+        pressure, degrees, _ = np.broadcast_arrays(
+            best - self.setting.base, first, np.empty(self._count or 1)
+        )
+        return Extreme(result(pressure, self._count), result(degrees, self._count))
 
     def at(
         self,
@@ -224,13 +231,14 @@ class CardPressure:
         varies along any segment, it is (n,) for pieces, too.
         """
         setting = self.setting
-        own = np.zeros(1, dtype=np.intp) if machine is None or self._alike else machine
+        number = np.zeros(1, dtype=np.intp) if machine is None or self._alike else machine
+
+        # the line that each angle is on; before its first line a machine is on its last
         turned = within_cycle(within, setting.cycle)
-        row = np.searchsorted(self._keys, own * (2 * setting.cycle) + turned, side="right") - 1
-        last = np.append(self._first[1:], len(self._keys))[own] - 1
-        begin, p, next_z, exponent, rise, begins, ends = self._rows[
-            :, np.where(row < self._first[own], last, row)
-        ]
+        row = np.searchsorted(self._keys, number * (2 * setting.cycle) + turned, side="right") - 1
+        last = np.append(self._first[1:], len(self._keys))[number] - 1
+        row = np.where(row < self._first[number], last, row)
+        begin, p, next_z, exponent, rise, begins, ends = self._rows[:, row]
         base = spread(setting.base, machine)
         if self._level:
             return np.asarray(p - base)
@@ -241,38 +249,46 @@ class CardPressure:
             distance = np.where(begin > 0.5, (1 - begin) - rest, distance)
         # angles of corners are rounded, lines may be steep: at corners the pressure is exactly the card's; of a piece
         # only the first and the last node may be there
-        at = np.s_[:: len(distance) - 1] if distance.ndim > 1 else np.s_[:]
-        turned = within_cycle(degrees[at], setting.cycle)
-        for corner, whole in ((ends, next_z - begin), (begins, 0.0)):
-            distance[at] = np.where(np.abs(turned - corner) <= _ROUNDING, whole, distance[at])
+        edges = np.s_[:: len(distance) - 1] if distance.ndim > 1 else np.s_[:]
+        turned = within_cycle(degrees[edges], setting.cycle)
+        for corner, corner_distance in ((ends, next_z - begin), (begins, 0.0)):
+            is_there = np.abs(turned - corner) <= _ROUNDING
+            distance[edges] = np.where(is_there, corner_distance, distance[edges])
         straight: Array = (p - base) + rise * distance
         if self._straight:
             return straight
-        known = np.array([(process.lift, process.clearance) for process in self._processes])
-        lift, clearance = (
-            known[0] if len(known) == 1 or machine is None else known[self._which[machine]].T
-        )
-        curved = exponent != 0
-        clearance = np.where(
-            curved, clearance, 1.0
-        )  # what is straight may begin without any volume
+
+        # polytropes; what is straight may begin without any volume
+        lifts = np.array([process.lift for process in self._processes])
+        clearances = np.array([process.clearance for process in self._processes])
+        process = 0 if len(lifts) == 1 or machine is None else self._which[machine]
+        lift = lifts[process]
+        is_curved = exponent != 0
+        clearance = np.where(is_curved, clearances[process], 1.0)
         power = (p + lift) * np.exp(growth(begin, distance, clearance) * -exponent)
-        return np.where(curved, power - lift - base, straight)
+        return np.where(is_curved, power - lift - base, straight)
 
 
 def _processes(
     chamber: Card | Rectangle | IdealCard, setting: Setting, count: int | None
 ) -> tuple[list[Process], Indices]:
     """Return the different processes in a chamber, and which of them each machine has, (machines,)."""
-    which, each = np.zeros(count or 1, int), [chamber]
+    which = np.zeros(count or 1, int)
+    chambers = [chamber]
     if varies(chamber):
         which = np.arange(count or 1)
-        each = [changed(chamber, lambda numbers, at=at: numbers[at].item()) for at in which]  # type: ignore[misc]
+        chambers = [_of_machine(chamber, number) for number in which.tolist()]
     numbers = np.stack(np.broadcast_arrays(which.astype(float), setting.lift, setting.base))
-    made, own = np.unique(numbers, axis=1, return_inverse=True)
-    return [
-        process_in(each[int(n)], lift, setting.cycle, base) for n, lift, base in made.T.tolist()
-    ], own.ravel()
+    different, of_machines = np.unique(numbers, axis=1, return_inverse=True)
+    processes = []
+    for number, lift, base in different.T.tolist():
+        processes.append(process_in(chambers[int(number)], lift, setting.cycle, base))
+    return processes, of_machines.ravel()
+
+
+def _of_machine(chamber: Card | Rectangle | IdealCard, number: int) -> Card | Rectangle | IdealCard:
+    """Return the chamber of one of many machines."""
+    return changed(chamber, lambda numbers: numbers[number].item())
 
 
 def _over_the_angle(
@@ -289,31 +305,34 @@ def _over_the_angle(
     lines = np.concatenate([process.lines for process in processes])[
         np.arange(len(machine)) + shift[machine]
     ]
-    stroke, z = lines[:, 0].astype(np.intp), lines[:, 1]
+    stroke = lines[:, 0].astype(np.intp)
+    z = lines[:, 1]
 
     # the crank end begins its process at the outer dead centre, one stroke later
-    number = stroke + (0 if setting.head_end else 1)
+    number = stroke if setting.head_end else stroke + 1
     mechanism = setting.mechanism if alike else taken(setting.mechanism, machine)
-    begin, end = (
-        360.0 * (k // 2) + np.where(k % 2 == 0, *mechanism.dead_centres())
-        for k in (number, number + 1)
-    )
-    edges, along = begin.copy(), z if setting.head_end else 1 - z
-    later = np.append(False, (stroke[1:] == stroke[:-1]) & (machine[1:] == machine[:-1]))
+    inner, outer = mechanism.dead_centres()
+    turn = 360.0 * (number // 2)
+    begin = turn + np.where(number % 2 == 0, inner, outer)
+    end = 360.0 * ((number + 1) // 2) + np.where(number % 2 == 0, outer, inner)
+
+    # a later line of a stroke begins where the stroke has come to its corner
+    edges = begin.copy()
+    fraction = z if setting.head_end else 1 - z
+    is_later = np.append(False, (stroke[1:] == stroke[:-1]) & (machine[1:] == machine[:-1]))
     for outstroke in (True, False):
-        inside = np.flatnonzero(later & ((number % 2 == 0) == outstroke))
+        inside = np.flatnonzero(is_later & ((number % 2 == 0) == outstroke))
         if len(inside):
-            own = mechanism if alike else taken(setting.mechanism, machine[inside])
-            edges[inside] = 360.0 * (number[inside] // 2) + own.crank_angles_at(
-                along[inside] * own.stroke, outstroke
-            )
-    ends = np.where(np.append(later[1:], False), np.append(edges[1:], 0.0), end)
+            moved = mechanism if alike else taken(setting.mechanism, machine[inside])
+            angle = moved.crank_angles_at(fraction[inside] * moved.stroke, outstroke)
+            edges[inside] = turn[inside] + angle
+    ends = np.where(np.append(is_later[1:], False), np.append(edges[1:], 0.0), end)
 
     # next to the other end of the stroke rounding may turn two angles round
     wide = np.mod(ends - edges + 1, 360.0) - 1 > _NO_WIDTH
     machine, stroke, begin, edges = machine[wide], stroke[wide], begin[wide], edges[wide]
-    begins = np.append(True, (stroke[1:] != stroke[:-1]) | (machine[1:] != machine[:-1]))
-    angles = np.mod(np.where(begins, begin, edges), setting.cycle)
+    is_first = np.append(True, (stroke[1:] != stroke[:-1]) | (machine[1:] != machine[:-1]))
+    angles = np.mod(np.where(is_first, begin, edges), setting.cycle)
     order = np.lexsort((angles, machine))
     angles, machine = angles[order], machine[order]
     following = np.append(np.arange(1, len(angles)), 0)
@@ -382,22 +401,22 @@ class PistonGas:
             piston.head_area * abs(ratio),
             piston.crank_area * abs(ratio),
         )
-        both = zip((self.head, self.crank), self.areas)
-        self.ends = [(end, area) for end, area in both if end is not None]
+        self.ends: list[tuple[Pressure, Number]] = []
+        for pressure, area in zip((self.head, self.crank), self.areas):
+            if pressure is not None:
+                self.ends.append((pressure, area))
         self._traces = [(end, area) for end, area in self.ends if end.traced]
         self.has_trace = bool(self._traces)
         self.swept_volume: Number = sum(area for _, area in self.ends) * self.stroke
-        turns = cycle * np.arange(repeats)
-        self.starts = [
-            Angles(one.starts.machine, one.starts.degrees + turn)
-            for turn in turns
-            for one, _ in self.ends
-        ]
-        chambers = zip((indicator.head_end, indicator.crank_end), self.areas)
-        clearances = [(getattr(chamber, "clearance", None), area) for chamber, area in chambers]
-        self.clearance_volumes = [
-            0.0 if one is None else one * area * self.stroke for one, area in clearances
-        ]
+        self.starts = []
+        for turn in cycle * np.arange(repeats):
+            for end, _ in self.ends:
+                self.starts.append(Angles(end.starts.machine, end.starts.degrees + turn))
+        self.clearance_volumes: list[Number] = []
+        for chamber, area in zip((indicator.head_end, indicator.crank_end), self.areas):
+            clearance = getattr(chamber, "clearance", None)
+            volume = 0.0 if clearance is None else clearance * area * self.stroke
+            self.clearance_volumes.append(volume)
 
     @cached_property
     def works(self) -> tuple[Number, ...]:
@@ -412,13 +431,12 @@ class PistonGas:
     @property
     def traced(self) -> tuple[float, float] | None:
         """Indicated work in J of the ends that have a trace, and its change per radian of angle; None without."""
+        if not self._traces:
+            return None
         distance = self.stroke * self.repeats
-        works = [(area * end.area, area * end.area_by_angle) for end, area in self._traces]
-        return (
-            (distance * sum(work[0] for work in works), distance * sum(work[1] for work in works))
-            if works
-            else None
-        )
+        work = sum(area * end.area for end, area in self._traces)
+        by_angle = sum(area * end.area_by_angle for end, area in self._traces)
+        return distance * work, distance * by_angle
 
     @property
     def noise(self) -> float:

@@ -11,8 +11,9 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity, value
 from kurbel.solver.figures import Results
 from kurbel.solver.gas import PistonGas
-from kurbel.traces.correct import COMPRESSION, EXPANSION, exponent
 from kurbel.traces.pressure import TracePressure
+from kurbel.traces.reading import COMPRESSOR, TraceReading
+from kurbel.traces.valves import valve_figures
 
 
 class Cycles(NamedTuple):
@@ -34,16 +35,45 @@ OF_CYCLES = (
 """Columns of the table of all measured cycles, in the order of `Cycles`."""
 
 
+def _mean(values: list[float], shares: Array) -> float:
+    """Return the mean of values by their shares."""
+    return float(np.dot(values, shares) / shares.sum())
+
+
 class Indicated(Results):
     """The key values of the traces of a cylinder's own piston, in SI; None where it has none."""
 
     mean_pressure_gross = value("p_i,g", "pressure", "Gross part of p_i: compression and expansion")
     mean_pressure_exchange = value("p_i,w", "pressure", "Pumping part of p_i: exhaust and intake")
     n_compression = value(
-        "n_c", "ratio", "Exponent of p V^n over the compression, 90 to 40 deg before its end"
+        "n_c",
+        "ratio",
+        "Exponent of p V^n over the compression, 90 to 40 deg before its end, or between the valves",
     )
     n_expansion = value(
-        "n_d", "ratio", "Exponent of p V^n over the expansion, 60 to 100 deg after its start"
+        "n_d",
+        "ratio",
+        "Exponent of p V^n over the expansion, 60 to 100 deg after its start, or between the valves",
+    )
+    n_compression_crank = value(
+        "n_c,C",
+        "ratio",
+        "Exponent of the compression in the crank end, where both ends have traces",
+    )
+    n_expansion_crank = value(
+        "n_d,C", "ratio", "Exponent of the expansion in the crank end, where both ends have traces"
+    )
+    suction_efficiency = value(
+        "η_s", "ratio", "Volumetric efficiency of the suction by the trace, mean of the ends"
+    )
+    discharge_efficiency = value(
+        "η_d", "ratio", "Volumetric efficiency of the discharge by the trace, mean of the ends"
+    )
+    suction_loss = value(
+        "p_v,s", "pressure", "Mean pressure lost between suction line and cylinder"
+    )
+    discharge_loss = value(
+        "p_v,d", "pressure", "Mean pressure lost between cylinder and discharge line"
     )
     p_rise_max = value("dp/dφ_max", "pressure_rise", "Largest rate of pressure rise, per degree")
     cycles_measured = value("Z", "ratio", "Number of measured cycles averaged for the forces")
@@ -69,42 +99,59 @@ class Indicated(Results):
     @cached_property
     def answers(self) -> dict[str, object]:
         """The key values; standard deviations are those of a sample, with m − 1."""
-        found = dict[str, object]()
+        answers = dict[str, object]()
         if not self._traces:
-            return found
+            return answers
 
-        parts = [
-            (trace.exchange_weights, self._share(trace) * trace.pressures) for trace in self._traces
-        ]
-        exchange = [weights * pressures for weights, pressures in parts if weights is not None]
+        exchange = []
+        for trace in self._traces:
+            if trace.exchange_weights is not None:
+                exchange.append(trace.exchange_weights * (self._share(trace) * trace.pressures))
         if exchange:
             terms = np.concatenate(exchange)
-            found["mean_pressure_exchange"] = lost = float(
-                unless_cancelled(terms.sum(), np.abs(terms).sum())
-            )
-            found["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - lost
-        found["p_rise_max"] = max(trace.steepest for trace in self._traces)
-        if len(self._traces) == 1:
-            (one,) = self._traces
-            after, absolute = (
-                one.trace.from_dead_centre(one.setting),
-                one.pressures + one.setting.lift,
-            )
-            for id, stretch in (("n_compression", COMPRESSION), ("n_expansion", EXPANSION)):
-                fitted = exponent(one.setting, one.trace.clearance, after, absolute, stretch)
-                found[id] = fitted.value if fitted else None
-        return found | self._scatter()
+            lost = float(unless_cancelled(terms.sum(), np.abs(terms).sum()))
+            answers["mean_pressure_exchange"] = lost
+            answers["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - lost
+        answers["p_rise_max"] = max(trace.steepest for trace in self._traces)
+        return answers | self._of_lines() | self._scatter()
+
+    def _of_lines(self) -> dict[str, object]:
+        """Return the key values of compression and expansion: of the head end first, and of a compressor's valves."""
+        figures = dict[str, object]()
+        indicator = self.gas.piston.indicator
+        role = indicator.role if indicator else None
+        valves = []
+        for number, pressure in enumerate(self._traces):
+            reading = TraceReading(pressure.trace, pressure.setting, pressure.each, role)
+            compression, expansion = reading.stroke_lines()
+            end = "_crank" if number else ""
+            figures[f"n_compression{end}"] = compression.value if compression else None
+            figures[f"n_expansion{end}"] = expansion.value if expansion else None
+            if reading.kind == COMPRESSOR:
+                valves.append((self._share(pressure), valve_figures(reading)))
+
+        # of both ends, each by its share of the swept volume
+        shares = np.array([share for share, _ in valves])
+        of_ends = [figure for _, figure in valves if figure is not None]
+        if not of_ends or len(of_ends) < len(valves):
+            return figures
+        figures["suction_efficiency"] = _mean([end.suction_efficiency for end in of_ends], shares)
+        figures["discharge_efficiency"] = _mean(
+            [end.discharge_efficiency for end in of_ends], shares
+        )
+        for name in ("suction_loss", "discharge_loss"):
+            losses = [end._asdict()[name] for end in of_ends]
+            if None not in losses:
+                figures[name] = float(np.dot(losses, shares))
+        return figures
 
     def _scatter(self) -> dict[str, object]:
         """Return the key values of several cycles."""
         if not self.cycles:
             return {}
         p_i, highest, at, _ = self.cycles
-        mean, deviation, top = (
-            abs(float(p_i.mean())),
-            float(p_i.std(ddof=1)),
-            int(np.argmax(highest)),
-        )
+        mean, deviation = abs(float(p_i.mean())), float(p_i.std(ddof=1))
+        top = int(np.argmax(highest))
         return {
             "cycles_measured": len(highest),
             "mean_pressure_std": deviation,
@@ -117,10 +164,9 @@ class Indicated(Results):
 
     def _share(self, pressure: TracePressure) -> float:
         """Return the share of a chamber in the swept volume."""
-        area = (
-            self.gas.piston.head_area if pressure.setting.head_end else self.gas.piston.crank_area
-        )
-        return float(area * pressure.setting.mechanism.stroke / self.gas.swept_volume)
+        piston, setting = self.gas.piston, pressure.setting
+        area = piston.head_area if setting.head_end else piston.crank_area
+        return float(area * setting.mechanism.stroke / self.gas.swept_volume)
 
     @cached_property
     def cycles(self) -> Cycles | None:
@@ -130,14 +176,16 @@ class Indicated(Results):
             return None
         (count,) = counts
         ends = []
-        for one in self._traces:
-            at, rises = np.mod(one.angles, one.setting.cycle), one.rises(one.each)[0]
-            own = (
-                self._share(one) * (one.each @ one.weights),
-                one.each.max(axis=1),
-                at[one.each.argmax(axis=1)],
+        for trace in self._traces:
+            angles = np.mod(trace.angles, trace.setting.cycle)
+            rises = trace.rises(trace.each)[0]
+            of_cycles = (
+                self._share(trace) * (trace.each @ trace.weights),
+                trace.each.max(axis=1),
+                angles[trace.each.argmax(axis=1)],
+                rises.max(axis=1),
             )
-            ends.append([np.broadcast_to(values, count) for values in (*own, rises.max(axis=1))])
+            ends.append([np.broadcast_to(values, count) for values in of_cycles])
         p_i, p_max, phi_p_max, p_rise_max = np.array(ends).transpose(1, 0, 2)
         traced = sum(self._share(trace) * trace.area for trace in self._traces)
         others = self.gas.work / self.gas.swept_volume - traced  # of an end that has a card, say

@@ -25,7 +25,7 @@ of both. A real shaft is continuous over its bearings; their loads then depend o
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -36,7 +36,7 @@ from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.crankshaft import Crankshaft
+from kurbel.machine.crankshaft import Counterweight, Crankshaft, SharedCounterweights
 from kurbel.machine.cylinder import crank_lag, pin_lag
 from kurbel.numerics.arithmetic import magnitude, some, where
 from kurbel.solver.vector import Force
@@ -194,22 +194,27 @@ class SupportedShaft:
     def __init__(self, machine: Machine) -> None:
         assert machine.crankshaft is not None
         self.machine, self.shaft = machine, machine.crankshaft
-        throws = sorted(
-            throws_of(machine.cylinders), key=lambda throw: float(np.ravel(throw.place)[0])
-        )
-        for one, following in pairwise(throws):
-            _decided(one.place <= following.place)
-        overhung, last = self.shaft.overhung, len(throws) - 1
-        for number, one in enumerate(throws):
-            # the second throw of an overhung shaft is at its other end
+        throws = throws_of(machine.cylinders)
+        throws.sort(key=lambda throw: float(np.ravel(throw.place)[0]))
+        for throw, following in pairwise(throws):
+            _decided(throw.place <= following.place)
+
+        # on their bearings; the second throw of an overhung shaft is at its other end
+        overhung = self.shaft.overhung
+        at_flywheel = 0 if overhung else len(throws) - 1
+        for number, throw in enumerate(throws):
             A, B = (1, 0) if overhung and number else (number, number + 1)
-            throws[number] = one._replace(A=A, B=B, flywheel=number == (0 if overhung else last))
+            throws[number] = throw._replace(A=A, B=B, flywheel=number == at_flywheel)
+
+        # what turns with the throws pulls at both bearings
         for number, product, beside in self._turning(throws):
-            one = throws[number]
-            along, u = product * unit_vector(-one.angle), beside if one.A < one.B else -beside
-            at_B = along * (u - self.shaft.place_A) / self.shaft.span
-            throws[number] = one._replace(at_A=one.at_A + along - at_B, at_B=one.at_B + at_B)
-        self.throws, self.bearings = tuple(throws), 2 if overhung else len(throws) + 1
+            throw = throws[number]
+            pull = product * unit_vector(-throw.angle)
+            u = beside if throw.A < throw.B else -beside
+            at_B = pull * (u - self.shaft.place_A) / self.shaft.span
+            throws[number] = throw._replace(at_A=throw.at_A + pull - at_B, at_B=throw.at_B + at_B)
+        self.throws = tuple(throws)
+        self.bearings = 2 if overhung else len(throws) + 1
 
     def _turning(self, throws: Sequence[Throw]) -> Iterator[tuple[int, Force, Number]]:
         """Yield of each rotating weight the index of the throw whose bearings carry it, mass times radius, and u in m.
@@ -219,21 +224,14 @@ class SupportedShaft:
         a rod is not included: its force acts on the pin.
         """
         cranks = throws_with_masses(self.machine)
-        weights = (
-            *(crank.weight(crank.unbalanced) for crank in cranks),
-            *counterweights_of(self.machine, cranks),
-        )
+        weights = [crank.weight(crank.unbalanced) for crank in cranks]
+        weights += counterweights_of(self.machine, cranks)
         for weight in weights:
-            own = cranks[weight.owner].place
-            if (
-                weight.place is None
-                or weight.place is own
-                or (own is not None and _decided(weight.place == own))
-            ):
-                number = next(
-                    number for number, throw in enumerate(throws) if weight.owner in throw.cylinders
-                )
-                yield number, weight.product, 0.0
+            if _is_at(weight, cranks[weight.owner].place):
+                for number, throw in enumerate(throws):
+                    if weight.owner in throw.cylinders:
+                        yield number, weight.product, 0.0
+                        break
             else:
                 distances = [np.asarray(abs(throw.place - weight.place)) for throw in throws]
                 nearest = int(_decided(np.argmin(np.broadcast_arrays(*distances), axis=0)))
@@ -255,15 +253,16 @@ class SupportedShaft:
         body = FreeBody(self.shaft, cylinder.mechanism.crank, rods, weight)
         omega = 0.0 if self.machine.speed is None else 2 * math.pi * self.machine.speed
         # what turns pulls outward, against D
-        return body.A - np.conj(throw.at_A) * omega * omega, body.B - np.conj(
-            throw.at_B
-        ) * omega * omega
+        A = body.A - np.conj(throw.at_A) * omega * omega
+        B = body.B - np.conj(throw.at_B) * omega * omega
+        return A, B
 
 
 def strength_obstacle(machine: Machine) -> str:
     """Return why the strength of the crankshaft of a machine cannot be examined, or an empty text."""
-    several = len(machine.cylinders) > 1
-    return machine.strength_obstacle or (shaft_obstacle(machine) if several else "")
+    if machine.strength_obstacle or len(machine.cylinders) == 1:
+        return machine.strength_obstacle
+    return shaft_obstacle(machine)
 
 
 def shaft_obstacle(machine: Machine) -> str:
@@ -299,32 +298,44 @@ def throws_of(cylinders: Sequence[Cylinder]) -> list[Throw]:
 
     Cylinders share a pin where their throws have one angle, γ − δ, and one place, and their stroke lines differ.
     """
-    found: list[Throw] = []
-    for number, one in enumerate(cylinders):
-        angle = _remainder(-pin_lag(one, cylinders[0]))
-        place = 0.0 if one.axial_position is None else one.axial_position
-        for index, throw in enumerate(found):
-            same = (magnitude(_remainder(throw.angle - angle)) <= _ALIKE) & (
-                magnitude(throw.place - place) <= _ALIKE
-            )
-            for other in throw.cylinders:
-                same = same & (
-                    magnitude(_remainder(cylinders[other].bank_angle - one.bank_angle)) > _ALIKE
-                )
-            if _decided(same):
-                found[index] = throw._replace(cylinders=(*throw.cylinders, number))
+    throws: list[Throw] = []
+    for number, cylinder in enumerate(cylinders):
+        angle = _remainder(-pin_lag(cylinder, cylinders[0]))
+        position = 0.0 if cylinder.axial_position is None else cylinder.axial_position
+        for index, throw in enumerate(throws):
+            banks = [cylinders[other].bank_angle for other in throw.cylinders]
+            if _shares_pin(throw, angle, position, cylinder.bank_angle, banks):
+                throws[index] = throw._replace(cylinders=(*throw.cylinders, number))
                 break
         else:
-            found.append(Throw((number,), angle, place))
-    return found
+            throws.append(Throw((number,), angle, position))
+    return throws
+
+
+def _shares_pin(
+    throw: Throw, angle: Number, position: Number, bank: Number, banks: Iterable[Number]
+) -> bool:
+    """Return whether a cylinder is on the pin of a throw; banks: stroke lines of those that are on it already."""
+    same = magnitude(_remainder(throw.angle - angle)) <= _ALIKE
+    same = same & (magnitude(throw.place - position) <= _ALIKE)
+    for other_bank in banks:
+        same = same & (magnitude(_remainder(other_bank - bank)) > _ALIKE)
+    return bool(_decided(same))
+
+
+def _is_at(weight: Weight, position: Number | None) -> bool:
+    """Return whether a weight is where its throw is, or anywhere."""
+    if weight.place is None or weight.place is position:
+        return True
+    return position is not None and bool(_decided(weight.place == position))
 
 
 def _decided(condition: Truth | Indices) -> bool | int:
     """Return what is so in every machine. Raises UsageError where it differs: such machines are computed one by one."""
-    every = np.ravel(condition)
-    if (every != every[0]).any():
+    of_machines = np.ravel(condition)
+    if (of_machines != of_machines[0]).any():
         raise UsageError("the throws of these machines are not alike")
-    return every[0]
+    return of_machines[0]
 
 
 def _remainder(degrees: Number) -> Number:
@@ -372,34 +383,41 @@ class CylinderThrow(NamedTuple):
         return Weight(mass * self.arm, 1, self.place, self.number)
 
 
-def throws_with_masses(machine: Machine, first: Number = 0.0) -> list[CylinderThrow]:
-    """Return the throws of all cylinders of a machine; first: stroke line from which their directions count."""
-    found = []
-    for number, one in enumerate(machine.cylinders):
-        masses, length, bank = one.masses, one.mechanism.rod_length, one.bank_angle - first
-        of_masses = (
-            (masses.at_pin(length), masses.rotating, masses.at_crosshead(length))
-            if masses
-            else (0.0,) * 3
+def throws_with_masses(machine: Machine) -> list[CylinderThrow]:
+    """Return the throws of all cylinders of a machine; directions count from the stroke line of cylinder 1."""
+    throws = []
+    first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
+    for number, cylinder in enumerate(machine.cylinders):
+        masses, length = cylinder.masses, cylinder.mechanism.rod_length
+        bank = cylinder.bank_angle - first
+        lag = crank_lag(cylinder, machine.cylinders[0])
+        arm = cylinder.mechanism.crank * unit_vector(bank - lag)
+        throw = CylinderThrow(
+            number,
+            cylinder.name,
+            cylinder,
+            cylinder.axial_position,
+            bank,
+            lag,
+            arm,
+            masses.at_pin(length) if masses else 0.0,
+            masses.rotating if masses else 0.0,
+            masses.at_crosshead(length) if masses else 0.0,
         )
-        lag = crank_lag(one, machine.cylinders[0])
-        arm = one.mechanism.crank * unit_vector(bank - lag)
-        throw = CylinderThrow(number, one.name, one, one.axial_position, bank, lag, arm, *of_masses)
-        found.append(throw)
-    return found
+        throws.append(throw)
+    return throws
 
 
 def middle_of(machine: Machine) -> Any:
     """Return the reference plane of moments in m: the one given, or midway between the outer cylinders."""
-    places = [
-        cylinder.axial_position
-        for cylinder in machine.cylinders
-        if cylinder.axial_position is not None
-    ]
-    if machine.moment_reference is not None or not places:
+    positions = []
+    for cylinder in machine.cylinders:
+        if cylinder.axial_position is not None:
+            positions.append(cylinder.axial_position)
+    if machine.moment_reference is not None or not positions:
         return machine.moment_reference
-    each = np.broadcast_arrays(*places)
-    middle = (np.min(each, axis=0) + np.max(each, axis=0)) / 2
+    of_machines = np.broadcast_arrays(*positions)
+    middle = (np.min(of_machines, axis=0) + np.max(of_machines, axis=0)) / 2
     return middle if np.ndim(middle) else float(middle)
 
 
@@ -407,8 +425,9 @@ def wheels_of(machine: Machine) -> tuple[Any, ...]:
     """Return the places in m of the counterweights in the wheels of a locomotive; () of another machine."""
     if machine.locomotive is None:
         return ()
-    given, half = middle_of(machine), machine.locomotive.wheel_distance / 2
-    middle = 0.0 if given is None else given
+    reference = middle_of(machine)
+    middle = 0.0 if reference is None else reference
+    half = machine.locomotive.wheel_distance / 2
     return middle - half, middle + half
 
 
@@ -417,23 +436,37 @@ def counterweights_of(machine: Machine, throws: Sequence[CylinderThrow]) -> Iter
 
     Of a locomotive they are in its wheels. Raises UsageError where a place is missing.
     """
-    given = [((throw,), throw.cylinder.counterweights) for throw in throws]
-    for owners, weights in (*given, (tuple(throws), machine.counterweights)):
-        if not isinstance(weights, tuple):
-            planes = weights.planes or wheels_of(machine)
-            for throw in owners:
-                weight = throw.weight(-(throw.rotating + weights.share * throw.mass))
-                if not planes:
-                    yield weight
-                elif throw.cylinder.masses:
-                    yield from split_by_lever(weight, planes, throw.name)
-        else:
-            # an angle counts from the throw; with several throws a weight without a place belongs to none of them
-            otherwise = owners[0].place if len(owners) == 1 else None
-            for one in weights:
-                product = one.product * unit_vector(owners[0].bank - owners[0].lag + one.angle)
-                place = otherwise if one.axial_position is None else one.axial_position
-                yield Weight(product, 1, place, owners[0].number)
+    for throw in throws:
+        yield from _weights_of(machine, [throw], throw.cylinder.counterweights)
+    yield from _weights_of(machine, throws, machine.counterweights)
+
+
+def _weights_of(
+    machine: Machine,
+    owners: Sequence[CylinderThrow],
+    counterweights: SharedCounterweights | tuple[Counterweight, ...],
+) -> Iterator[Weight]:
+    """Yield the weights of these throws: given one by one, or as a share of the masses that they balance."""
+    if isinstance(counterweights, tuple):
+        # an angle counts from the throw; with several throws a weight without a place belongs to none of them
+        otherwise = owners[0].place if len(owners) == 1 else None
+        for counterweight in counterweights:
+            angle = owners[0].bank - owners[0].lag + counterweight.angle
+            position = counterweight.axial_position
+            yield Weight(
+                counterweight.product * unit_vector(angle),
+                1,
+                otherwise if position is None else position,
+                owners[0].number,
+            )
+        return
+    planes = counterweights.planes or wheels_of(machine)
+    for throw in owners:
+        weight = throw.weight(-(throw.rotating + counterweights.share * throw.mass))
+        if not planes:
+            yield weight
+        elif throw.cylinder.masses:
+            yield from split_by_lever(weight, planes, throw.name)
 
 
 def split_by_lever(weight: Weight, planes: tuple[Any, ...], owner: str) -> tuple[Weight, Weight]:

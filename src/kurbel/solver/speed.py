@@ -53,14 +53,10 @@ class SpeedLaw(NamedTuple):
     def of(cls, effort: TurningEffort) -> SpeedLaw | None:
         """Return the law of a machine; None where its load does not depend on the speed, or has a mean of zero."""
         load = effort.machine.load
-        if (
-            load is None
-            or not effort.mean.any()
-            or load.diagram
-            or (load.slip is None and every(load.power == 0))
-        ):
+        if load is None or load.diagram or not effort.mean.any():
             return None
-        return cls(effort.mean, load.power, load.slip)
+        is_constant = load.slip is None and every(load.power == 0)
+        return None if is_constant else cls(effort.mean, load.power, load.slip)
 
     @property
     def steepness(self) -> Array:
@@ -88,19 +84,19 @@ class SpeedLine(Results):
         "δ",
         "ratio",
         "Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m",
-        lambda one: one.fluctuation,
+        lambda line: line.fluctuation,
     )
     omega_max = value(
-        "ω_max", "angular_velocity", "Largest angular velocity", lambda one: one.extreme(0)
+        "ω_max", "angular_velocity", "Largest angular velocity", lambda line: line.extreme(0)
     )
     omega_min = value(
-        "ω_min", "angular_velocity", "Smallest angular velocity", lambda one: one.extreme(2)
+        "ω_min", "angular_velocity", "Smallest angular velocity", lambda line: line.extreme(2)
     )
     omega_mean = value(
         "ω_m",
         "angular_velocity",
         "Mean angular velocity over time",
-        lambda one: one.result(one.effort.omega * one.mean),
+        lambda line: line.result(line.effort.omega * line.mean),
     )
     alpha: Any
     growth: Any
@@ -184,6 +180,7 @@ class SpeedEquation:
 
     unknowns = 1
     bounded: int | None = 0
+    modal = None
 
     def __init__(self, effort: TurningEffort, law: SpeedLaw | None, flywheel: Array) -> None:
         self._effort, self._law, self.flywheel = effort, law, flywheel
@@ -195,9 +192,8 @@ class SpeedEquation:
     def known(self, pieces: Pieces) -> Array:
         """Return M − M_load at uniform rotation in N m, and the kinetic energy ½ J(φ) ω_n² in J."""
         excess, moving = pieces.carried(self._course, self._effort.pieces)
-        return np.stack(
-            (excess, (moving + pieces.of(self.flywheel)) * pieces.of(self._effort.omega**2 / 2))
-        )
+        inertia = moving + pieces.of(self.flywheel)
+        return np.stack((excess, inertia * pieces.of(self._effort.omega**2 / 2)))
 
     def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return z′ and its derivative by z."""
@@ -215,9 +211,8 @@ class RigidLine(SpeedLine):
 
     def __init__(self, effort: TurningEffort, law: SpeedLaw | None, flywheel: Array) -> None:
         moving, first = effort.J_moving, effort.pieces.first
-        least, most = (
-            one.reduceat(one.reduce(moving), first) + flywheel for one in (np.minimum, np.maximum)
-        )
+        least = np.minimum.reduceat(np.minimum.reduce(moving), first) + flywheel
+        most = np.maximum.reduceat(np.maximum.reduce(moving), first) + flywheel
         failed = least <= _NO_INERTIA * most
         if effort.count is None and failed[0]:
             angle = float(effort.pieces.degrees.T.ravel()[np.argmin(moving.T)])
@@ -229,14 +224,13 @@ class RigidLine(SpeedLine):
         self._equation = SpeedEquation(effort, law, np.where(failed, 1.0, flywheel))
 
         if law:
-            found = periodic(self._equation, effort.pieces)
+            course = periodic(self._equation, effort.pieces)
             if effort.count is None:
-                found.refuse()
-            failed = (
-                failed | found.failed | (law.mean == 0)
-            )  # in a batch: a load with a mean of zero
-            sample = self._speeds(found.pieces, found.samples[0], np.zeros(len(failed)))
-            pieces, (u, lag) = refined(found.pieces, sample)
+                course.refuse()
+            # in a batch: a load with a mean of zero fails, too
+            failed = failed | course.failed | (law.mean == 0)
+            sample = self._speeds(course.pieces, course.samples[0], np.zeros(len(failed)))
+            pieces, (u, lag) = refined(course.pieces, sample)
         else:
             pieces, u, lag = self._under_constant_load(effort)
         least_u = -1.0 if law else 1.000001 * _SLOWEST - 1
@@ -264,15 +258,17 @@ class RigidLine(SpeedLine):
         """
         pieces, E = effort.pieces, effort.true_excess.E
         while True:
-            excess, energy = pieces.carried(E, effort.pieces), self._equation.known(pieces)[1]
-            least = np.maximum.reduceat(
-                ((_SLOWEST**2 - 1) * energy - excess).max(axis=0), pieces.first
-            )
-            swing, constant = pieces.largest(excess), least
+            excess = pieces.carried(E, effort.pieces)
+            _, energy = self._equation.known(pieces)
+            missing = (_SLOWEST**2 - 1) * energy - excess
+            least = np.maximum.reduceat(missing.max(axis=0), pieces.first)
+            swing = pieces.largest(excess)
+            constant = least
             for _ in range(100):
                 _, lag = self._speeds(effort.pieces, E, constant)(pieces)
                 slope = pieces.mean(-0.5 * (1 + lag) ** 3 / energy)
-                constant, before = np.maximum(constant - pieces.mean(lag) / slope, least), constant
+                before = constant
+                constant = np.maximum(before - pieces.mean(lag) / slope, least)
                 if (np.abs(constant - before) <= 1e-15 * swing).all():
                     break
             fine, (u, lag) = refined(pieces, self._speeds(effort.pieces, E, constant))
@@ -294,12 +290,13 @@ class RigidLine(SpeedLine):
         effort = self.effort
 
         def sample(pieces: Pieces) -> Array:
-            u, (excess, energy) = pieces.carried(self.u, self.pieces), self._equation.known(pieces)
-            ratio, torque = u * (2 + u), pieces.carried(effort.inertia_torque, effort.pieces)
+            u = pieces.carried(self.u, self.pieces)
+            excess, energy = self._equation.known(pieces)
+            ratio = u * (2 + u)
+            torque = pieces.carried(effort.inertia_torque, effort.pieces)
             rise = self.law.rise(ratio, pieces)[0] if self.law else 0.0
-            return ((excess - rise + ratio * torque) / energy * pieces.of(effort.omega**2 / 2))[
-                None
-            ]
+            slope = (excess - rise + ratio * torque) / energy  # dr/dφ
+            return (slope * pieces.of(effort.omega**2 / 2))[None]
 
         pieces, (values,) = refined(self.pieces, sample)
         return pieces, np.where(pieces.of(self.failed), 0.0, values)

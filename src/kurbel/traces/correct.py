@@ -56,7 +56,8 @@ class Trace(Indivisible):
     where it is not known; level: a line over the cycle is taken off so that it closes; pegging: where the level is
     known, as a text at the dead centre where the compression begins, the ambient; against: the file counts its angles
     against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the figures of the
-    file were multiplied by.
+    file were multiplied by; timed: its angles come from times and a speed; suction, discharge: pressures in
+    Pa in the lines of a compressor, where they are known.
     Raises RuleError for samples that are no such cycle.
     """
 
@@ -72,6 +73,9 @@ class Trace(Indivisible):
     against: bool = False
     unit: float = 1.0
     scale: float = 1.0
+    timed: bool = False
+    suction: float | None = None
+    discharge: float | None = None
     burns: ClassVar[bool] = False
     by_steam: ClassVar[bool] = False
     compresses: ClassVar[bool] = False
@@ -240,14 +244,17 @@ COMPRESSION = -90.0, -40.0
 """Degrees from the firing dead centre between which inlets are closed and nothing burns yet."""
 EXPANSION = 60.0, 100.0
 """Degrees from it between which nothing burns any more and outlets are closed still."""
-_FEWEST = 5
+FEWEST = 5
+"""Samples on a line, or on a parabola, at least."""
 
 
 class Exponent(NamedTuple):
-    """An exponent and its standard error."""
+    """An exponent, its standard error, the scatter of ln p about the line, and the mean pressure on it in Pa."""
 
     value: float
     error: float
+    scatter: float
+    level: float
 
 
 def exponent(
@@ -263,14 +270,33 @@ def exponent(
     five samples there, or where the pressure is not above the vacuum.
     """
     inside = (after >= stretch[0]) & (after <= stretch[1])
-    pressures = absolute[inside]
-    if clearance is None or len(pressures) < _FEWEST or not (pressures > 0).all():
+    if clearance is None or np.count_nonzero(inside) < FEWEST:
         return None
-    volumes = setting.stroke_fraction(after[inside]) + clearance
-    x, y = (np.log(one) - np.log(one).mean() for one in (volumes, pressures))
-    slope = float(x @ y / (x @ x))
-    left = y - slope * x
-    return Exponent(0.0 - slope, math.sqrt(float(left @ left / (x @ x)) / (len(x) - 2)))
+    return polytrope(setting, clearance, after[inside], absolute[inside])
+
+
+_ON_A_LINE = 4
+"""Samples on a line at least, where a trial moves it between them."""
+
+
+def polytrope(setting: Setting, clearance: float, after: Array, absolute: Array) -> Exponent | None:
+    """Return −d ln p/d ln V by least squares of samples (n,); None for too few, or not above the vacuum."""
+    if len(absolute) < _ON_A_LINE or not (absolute > 0).all():
+        return None
+    volumes = setting.stroke_fraction(after) + clearance
+    x = np.log(volumes)
+    x = x - x.mean()
+    y = np.log(absolute)
+    y = y - y.mean()
+    spread = float(x @ x)
+    if spread <= 0:
+        return None
+    slope = float(x @ y) / spread
+    rest = y - slope * x
+    variance = float(rest @ rest) / (len(x) - 2)
+    return Exponent(
+        0.0 - slope, math.sqrt(variance / spread), math.sqrt(variance), float(absolute.mean())
+    )
 
 
 # the dead centre from a motored trace: without combustion the pressure peaks just before it
@@ -301,7 +327,7 @@ def parabola_peak(places: Array, values: Array, top: float, width: float) -> Pea
     for _ in range(3):
         near = np.abs(places - top) <= width
         along = places[near] - top
-        if len(along) < _FEWEST or len(np.unique(along.round(3))) < 3:
+        if len(along) < FEWEST or len(np.unique(along.round(3))) < 3:
             return None
         (bend, slope, _), covariance = np.polyfit(along, values[near], 2, cov=True)
         if not bend < 0 or abs(slope / (2 * bend)) > width:
@@ -332,7 +358,7 @@ def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
     pressures, period = laps.mean(axis=0)[:-1], float(angles[-1] - angles[0])
     top = float(angles[int(np.argmax(pressures))])
     places = np.remainder(angles[:-1] - top + period / 2, period) - period / 2
-    if np.count_nonzero(np.abs(places) <= _HALF / 2) < _FEWEST:
+    if np.count_nonzero(np.abs(places) <= _HALF / 2) < FEWEST:
         refused(
             f"has fewer than five samples within {_HALF / 2:g} deg of its peak; measure it finer"
         )

@@ -126,6 +126,8 @@ def whole_cycles(
     """
     recording = Recording(-angles if against else angles, values, place, most_turns)
     _refuse_no_numbers(recording, kind)
+    if kind == "pressure":
+        _refuse_no_samples(recording)
     steps = np.diff(recording.angles)
     falls_mostly = (steps < 0).sum() > (steps > 0).sum()
     if against and falls_mostly:  # in the order of the angle, not of time
@@ -152,6 +154,36 @@ def _refuse_no_numbers(recording: Recording, kind: str) -> None:
         beyond = out_of_size(size, what)
         if "large" in beyond:
             recording.refuse(largest, f"the {what} {size:g} {beyond}")
+
+
+_RARE = 0.01
+"""Share of the samples of a column up to which one value is no sample, but what a logger writes instead."""
+_FAR = 5.0
+"""Ranges of all other samples by which such a value lies beyond them."""
+_ENOUGH = 20
+"""Samples in a column, at least."""
+
+
+def _refuse_no_samples(recording: Recording) -> None:
+    """Raise RuleError for a pressure far beyond all others, such as the 9999 of a lost sample."""
+    if recording.values.shape[1] < _ENOUGH:
+        return
+    for column in recording.values:
+        for extreme in (float(column.max()), float(column.min())):
+            is_extreme = column == extreme
+            others = column[~is_extreme]
+            if not others.size or np.count_nonzero(is_extreme) > _RARE * len(column) + 1:
+                continue
+            low = float(others.min())
+            high = float(others.max())
+            beyond = max(extreme - high, low - extreme)
+            if beyond <= _FAR * (high - low) or high == low:
+                continue
+            message = (
+                f"the pressure {extreme / 1e5:.5g} bar is no sample: all others lie from "
+                f"{low / 1e5:.4g} to {high / 1e5:.4g} bar; leave such rows out"
+            )
+            recording.refuse(int(np.argmax(is_extreme)), message)
 
 
 def _put_in_order(recording: Recording) -> None:

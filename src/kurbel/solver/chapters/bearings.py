@@ -168,7 +168,7 @@ class Bearing(Results):
     rubbing_speed_mean = value("v_L,m", "velocity", "Mean sliding speed of the surfaces")
     pressure_velocity = value("k_L", "pressure_velocity", "Mean pressure times mean speed, p v")
     work_rubbing = value(
-        "A_f,L", "energy", "Friction work per cycle", lambda one: one.friction_work()
+        "A_f,L", "energy", "Friction work per cycle", lambda bearing: bearing.friction_work()
     )
 
     @part(_oil_film, there=lambda bearing: bearing.oil is not None)
@@ -316,7 +316,11 @@ class RodPin(Bearing):
     def __init__(self, name: str, own: CylinderForces, size: Size, pin: str) -> None:
         surfaces = ("throw" if pin == "crank_pin" else "engine", "rod")
         super().__init__(name, pin, (own,), size, surfaces)
-        self._own, self._pin, self._bank = own, pin, unit_vector(own.drive.cylinder.bank_angle)
+        self._own = own
+        self._pin = pin
+        # its stroke line, from that of cylinder 1
+        first = own.drive.machine.cylinders[0]
+        self._bank = unit_vector(own.drive.cylinder.bank_angle - first.bank_angle)
 
     def _seen(self, state: State, bank: Any) -> Frames:
         """Return the load in each frame; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""
