@@ -481,9 +481,7 @@ NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
 
 def pin_force(factor: ColumnFactor) -> Offer:
     """Return the force on a crank pin that carries no connecting rod; factor: over P less friction."""
-    text = (
-        "Force of the sliding block or rod on the crank pin, positive in the direction of P"
-    )
+    text = "Force of the sliding block or rod on the crank pin, positive in the direction of P"
     return force_column("F_pin", "F_z", "force", text, factor, lambda state: state.along_rod)
 
 
