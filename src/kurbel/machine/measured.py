@@ -29,6 +29,7 @@ class Columns(Record):
     """The layout of a file of columns; `what` was measured over the angles: pressures or torques."""
 
     what: ClassVar[str]
+    needs_speed: ClassVar[bool] = True
     file = alternative(
         FILE_PATH, "File with a column of angles in degrees", example="indicator.csv"
     )
@@ -42,7 +43,28 @@ class Columns(Record):
         needs="file",
     )
     recorded_speed = alternative(
-        "speed", "Constant speed at which times were recorded", above=0, needs="angle_unit"
+        "speed",
+        "Constant speed at which times were recorded; of pressures, where their period does not show it",
+        above=0,
+        needs="angle_unit",
+    )
+    pulse_column = alternative(
+        int,
+        "Column of the pulses of a toothed wheel, instead of a column of angles",
+        instead="angle_column",
+        needs="file",
+    )
+    teeth = alternative(
+        NumberForm(whole=True, least=1),
+        "Teeth of the wheel in one turn, with the missing ones",
+        absent="1",
+        needs="pulse_column",
+    )
+    missing_teeth = alternative(
+        NumberForm(whole=True, least=0),
+        "Teeth that are left out at the reference: angles count from the first tooth after the gap",
+        absent="0",
+        needs="pulse_column",
     )
     angle_step = alternative(
         "angle",
@@ -74,17 +96,20 @@ class Columns(Record):
         if "file" not in given:
             return
         key = f"{cls.what}_columns" if f"{cls.what}_columns" in given else f"{cls.what}_column"
-        columns, own = given.get(key, 2), given.get("angle_column", 1)
-        clash = (
-            own in (columns if isinstance(columns, tuple) else (columns,))
-            and "angle_step" not in given
-        )
-        yield Rule(key, clash, f"column {own} is that of the angles")
-        timed, speed = given.get("angle_unit") in SECONDS, "recorded_speed" in given
+        columns = given.get(key, 2)
+        if not isinstance(columns, tuple):
+            columns = (columns,)
+        first_column = given.get("pulse_column", given.get("angle_column", 1))
+        is_twice = first_column in columns and "angle_step" not in given
+        yield Rule(key, is_twice, f"column {first_column} is that of the angles")
+        is_timed = given.get("angle_unit") in SECONDS
+        has_speed = "recorded_speed" in given
         message = "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"
-        yield Rule("angle_unit", timed and not speed, message)
+        yield Rule("angle_unit", is_timed and not has_speed and cls.needs_speed, message)
         message = "a speed is for times only; write 'angle_unit: s'"
-        yield Rule("recorded_speed", speed and not timed, message)
+        yield Rule("recorded_speed", has_speed and not is_timed, message)
+        message = "how many 'teeth' has the wheel in one turn? Write 'teeth: 60', say"
+        yield Rule("pulse_column", "pulse_column" in given and "teeth" not in given, message)
 
     @classmethod
     def layout(cls, keys: dict[str, Any]) -> Layout:
@@ -113,6 +138,7 @@ class Measured(Columns):
     """What becomes a `Trace` once its samples are read and closed to whole cycles."""
 
     what = "pressure"
+    needs_speed = False
     file = Columns.file._replace(
         text="File with a column of angles in degrees and one of pressures; or give `points`",
         required=True,
@@ -239,7 +265,7 @@ class Measured(Columns):
             against=against,
             unit=up / down,
             scale=scale,
-            timed=laid_out.angle_unit in SECONDS,
+            clock=samples.clock,
             suction=suction_line,
             discharge=discharge_line,
         )
@@ -251,6 +277,8 @@ def dead_centre(
     """Return the angle of the dead centre in degrees as the file counts, and a note on it; raises RuleError."""
     try:
         samples = samples_of_file(given.motored, layout, "pressure", base, against)
+        if samples.clock is not None and samples.clock.is_free:
+            refused("a motored trace by time needs a 'recorded_speed'")
         peak, doubt = motored_peak(samples.angles, samples.values)
     except RuleError as error:
         raise RuleError(
