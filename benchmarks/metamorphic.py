@@ -1,11 +1,17 @@
 """Laws that hold for every machine, on random files and on those that are shipped.
 
-    python benchmarks/metamorphic.py [COUNT [SEED]]
+    python benchmarks/metamorphic.py [COUNT [SEED [LAW …]]]
 
-Two keys of a file vary at once, and four rows are computed together and each by itself; the same file is written with
-other units, with a cylinder that is `like` another one written out, with what `--set` gives as a load case; and csv is
-compared with json. Every difference above rounding is printed, and every fault of kurbel's own. Without a seed it is
-that of the day.
+batch      two keys of a file vary at once; four rows are computed together and each by itself
+units      the same file with other units
+like       with a cylinder that is `like` another one written out
+scale      lengths four times as large, times twice, masses 64 times: gravity and densities stay
+cylinders  the same cylinders, all but the first in another order
+case       what `--set` gives as a load case
+csv        csv against json
+
+Every difference above rounding is printed, and every fault of kurbel's own. Without a seed it is that of the day,
+without laws all of them.
 """
 
 from __future__ import annotations
@@ -21,7 +27,6 @@ import traceback
 from collections import Counter
 from collections.abc import Iterator
 from datetime import date
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -256,87 +261,319 @@ def run(text: str, *arguments: str) -> Any:
     return CliRunner().invoke(command_line, [*arguments, "-"], input=text)
 
 
-def figures_of(output: str) -> dict[str, list[Any]]:
-    """Return the columns and key values of a document, by where they are in it."""
+def figures_of(
+    output: str, with_units: bool = False, by_name: bool = False
+) -> dict[str, list[Any]]:
+    """Return the columns and key values of a document, by where they are in it.
+
+    with_units: each begins with its unit; by_name: parts that have a name are found by it, not by their number.
+    """
     document = json.loads(output)
     found: dict[str, list[Any]] = {}
 
     def gather(value: Any, place: str) -> None:
-        if isinstance(value, dict):
-            name = f"{place}/{value.get('id') or value.get('name') or ''}"
-            for key, inner in value.items():
-                if key in ("values", "value"):
-                    found[name] = inner if isinstance(inner, list) else [inner]
-                elif isinstance(inner, dict | list):
-                    gather(inner, f"{name}/{key}")
-        elif isinstance(value, list):
+        if isinstance(value, list):
             for number, inner in enumerate(value):
-                gather(inner, f"{place}[{number}]")
+                is_named = by_name and isinstance(inner, dict) and {"name", "id"} & inner.keys()
+                gather(inner, place if is_named else f"{place}[{number}]")
+        if not isinstance(value, dict):
+            return
+        name = f"{place}/{value.get('id') or value.get('name') or ''}"
+        for key, inner in value.items():
+            if key in ("values", "value"):
+                values = inner if isinstance(inner, list) else [inner]
+                unit = [value.get("unit", "")] if with_units else []
+                found[name] = [*unit, *values]
+            elif isinstance(inner, dict | list):
+                gather(inner, f"{name}/{key}")
 
     gather(document, "")
     return found
 
 
-def differences(output: str, other: str, tolerance: float) -> Iterator[str]:
+def differences(
+    first: dict[str, list[Any]], second: dict[str, list[Any]], tolerance: float
+) -> Iterator[str]:
     """Yield where two documents have other figures; of a column relative to its largest one."""
-    first, second = figures_of(output), figures_of(other)
     for name in sorted(first.keys() ^ second.keys()):
         yield f"{name} is in one of both only"
     for name in first.keys() & second.keys():
-        values, others = first[name], second[name]
-        if "residual" in name or "phi" in name or "angle" in name:
-            continue
-        if len(values) != len(others):
-            yield f"{name}: {len(values)} and {len(others)} values"
-            continue
-        numbers = [abs(value) for value in values if isinstance(value, int | float)]
-        size = max(numbers, default=0.0)
-        for value, other_value in zip(values, others):
-            if isinstance(value, str) or isinstance(other_value, str):
-                continue
-            if (apart := distance(value, other_value, size)) > tolerance:
-                yield f"{name}: {value!r} and {other_value!r}: {apart:.1e}"
-                break
+        if not any(word in name for word in ("residual", "phi", "angle")):
+            yield from values_apart(name, first[name], second[name], tolerance)
 
 
-def written_otherwise(text: str) -> Iterator[str]:
-    """Yield what differs between a file and the same in other words."""
+def values_apart(
+    name: str, values: list[Any], others: list[Any], tolerance: float
+) -> Iterator[str]:
+    """Yield the first of the values of a column, or the key value, that differs."""
+    if len(values) != len(others):
+        yield f"{name}: {len(values)} and {len(others)} values"
+        return
+    numbers = [abs(value) for value in values if isinstance(value, int | float)]
+    size = max(numbers, default=0.0)
+    for value, other_value in zip(values, others):
+        if isinstance(value, str) or isinstance(other_value, str):
+            continue
+        if (apart := distance(value, other_value, size)) > tolerance:
+            yield f"{name}: {value!r} and {other_value!r}: {apart:.1e}"
+            return
+
+
+# the same machine in another size
+
+_LENGTH, _TIME, _MASS = 4.0, 2.0, 64.0
+"""Powers of two change no digit; L/T² and M/L³ stay, and with them gravity and densities."""
+_FORCE = _MASS * _LENGTH / _TIME**2
+_PRESSURE = _FORCE / _LENGTH**2
+SCALES = {
+    **dict.fromkeys(("m", "mm", "cm", "in", "ft"), _LENGTH),
+    **dict.fromkeys(("l", "cm3"), _LENGTH**3),
+    **dict.fromkeys(("s", "min", "h"), _TIME),
+    **dict.fromkeys(("Hz", "rps", "rpm"), 1 / _TIME),
+    **dict.fromkeys(("kg", "g", "t", "lb"), _MASS),
+    **dict.fromkeys(("N", "kN", "MN", "kgf", "kp", "tf", "lbf"), _FORCE),
+    **dict.fromkeys(
+        ("Pa", "kPa", "MPa", "GPa", "bar", "mbar", "at", "atm", "psi", "inHg"), _PRESSURE
+    ),
+    **dict.fromkeys(("J", "kJ", "Nm", "kNm"), _FORCE * _LENGTH),
+    **dict.fromkeys(("W", "kW", "PS", "hp"), _FORCE * _LENGTH / _TIME),
+}
+"""How many times as large a figure in such a unit becomes; one in another unit, such as degrees, stays."""
+_FACTOR = re.compile(r"(/?) ?\(?([A-Za-z]+)\^?(\d?)\)?")
+_ABSENT = {
+    "ambient": f"{101325 * _PRESSURE!r} Pa",
+    "shear_modulus": f"{82 * _PRESSURE!r} GPa",
+    "vapour_pressure": f"{2339 * _PRESSURE!r} Pa",
+}
+"""What kurbel takes for keys that are absent, which has to grow, too."""
+_OF_ANOTHER_SIZE = {"capacity_normal"}
+"""Key values that refer to a fixed pressure."""
+
+
+def scale_of(unit: str) -> float:
+    """Return how many times as large a figure in a unit such as N/mm2 or kg m^2 becomes."""
+    scale = 1.0
+    is_divisor = False
+    for over, name, power in _FACTOR.findall(unit):
+        is_divisor = is_divisor or bool(over)
+        factor = SCALES.get(name, 1.0) ** int(power or 1)
+        scale = scale / factor if is_divisor else scale * factor
+    return scale
+
+
+def in_another_size(value: Any, key: str = "") -> Any:
+    """Return the keys of a file of the machine in its other size."""
+    if isinstance(value, dict):
+        return sized(value, key)
+    if isinstance(value, list):
+        return [in_another_size(item, key) for item in value]
+    number = NUMBER.fullmatch(value) if isinstance(value, str) else None
+    if number is None or not number[2]:
+        return value
+    scale = scale_of(number[2])
+    # the R of a gas is J/(kg K) and grows with J/kg; of a molar mass it is the divisor
+    if key == "molar_mass":
+        scale = _TIME**2 / _LENGTH**2
+    return f"{float(number[1]) * scale!r} {number[2]}"
+
+
+def sized(keys: dict[str, Any], name: str) -> dict[str, Any]:
+    """Return the keys of a mapping in the other size: numbers beside a unit, and what is on paper, are other ones."""
+    if name == "drawn":
+        # the diagram on paper stays as it is
+        spring = NUMBER.fullmatch(keys["spring"])
+        assert spring
+        return keys | {"spring": f"{float(spring[1]) / _PRESSURE!r} {spring[2]}"}
+    larger = {
+        key: in_another_size(value, key)
+        for key, value in keys.items()
+        if key not in ("limits", "expect")
+    }
+    if "drawn" in keys:
+        larger |= {key: keys[key] for key in ("area", "mean_height") if key in keys}
+    unit = keys.get("unit")
+    if isinstance(unit, str):
+        scale = scale_of(unit)
+        numbers = {
+            key: rows_times(value, scale, key)
+            for key, value in keys.items()
+            if key in ("points", "harmonics", "mean", *_LINES)
+        }
+        larger |= numbers
+    if "diameter" in keys and "length" in keys and "stiffness" not in keys and name == "shaft":
+        larger.setdefault("shear_modulus", _ABSENT["shear_modulus"])
+    if name == "liquid":
+        larger.setdefault("vapour_pressure", _ABSENT["vapour_pressure"])
+    return larger
+
+
+_LINES = ("expansion", "compression", "intake", "exhaust")
+"""Lines of a card."""
+
+
+def rows_times(value: Any, scale: float, key: str) -> Any:
+    """Return a number, or the points or orders of a table, with all but its first column so many times as large."""
+    if not isinstance(value, list):
+        return value * scale
+    return [[row[0], *(number * scale for number in row[1:])] for row in value]
+
+
+def figures_apart(output: str, other: str) -> Iterator[str]:
+    """Yield which figures of the machine in its other size are not those of the scale."""
+    first, second = figures_of(output, with_units=True), figures_of(other)
+    yield from (f"{place} is in one of both only" for place in sorted(first.keys() ^ second.keys()))
+    for place in first.keys() & second.keys():
+        unit, *values = first[place]
+        if "residual" in place or any(name in place for name in _OF_ANOTHER_SIZE):
+            continue
+        scale = scale_of(unit)
+        scaled = [value * scale if isinstance(value, float) else value for value in values]
+        yield from values_apart(place, scaled, second[place], ROUNDING)
+
+
+# the same cylinders in another order
+
+
+def in_another_order(text: str, random: Random) -> tuple[str, bool] | None:
+    """Return the file with all cylinders but the first in another order, and whether their places are known.
+
+    None where there are fewer than three; cylinders at one place keep their order, which is that on the pin.
+    """
+    machine = machine_of(text)
     keys = yaml.safe_load(text)
-    others = {"units": in_other_units(keys), "like": written_out(keys)}
-    case = {"name": "as set", "set": {"speed": "77 rpm"}}
-    texts = {name: text_of(other) for name, other in others.items() if other is not None}
+    listed = keys.get("cylinders")
+    if isinstance(listed, dict):
+        listed = [listed["each"]] * len(machine.cylinders)
+        keys = keys | {"cylinders": listed}
+    else:
+        keys = written_out(keys) or keys
+    if not isinstance(listed, list) or len(listed) < 3:
+        return None
+    # where each is, and by which name the rest of the file calls it
+    cylinders = list[dict[str, Any]]()
+    for cylinder, own in zip(machine.cylinders, keys["cylinders"]):
+        place = {
+            "name": cylinder.name,
+            "crank_position": f"{cylinder.crank_position!r} deg",
+            "bank_angle": f"{cylinder.bank_angle!r} deg",
+        }
+        if cylinder.inclination is not None:
+            place["inclination"] = f"{cylinder.inclination!r} deg"
+        if cylinder.axial_position is not None:
+            place["axial_position"] = f"{cylinder.axial_position!r} m"
+        cylinders.append(own | place)
+    places = [cylinder.get("axial_position") for cylinder in cylinders]
+    order = (1 + random.permutation(len(cylinders) - 1)).tolist()
+    for place in set(places):
+        together = [number for number in order if places[number] == place]
+        ranked = iter(sorted(together))
+        order = [next(ranked) if places[number] == place else number for number in order]
+    shuffled = [cylinders[number] for number in [0, *order]]
+    keys = {key: value for key, value in keys.items() if key != "firing_order"}
+    return text_of(keys | {"cylinders": shuffled}), None not in places
+
+
+def ordered(text: str, random: Random) -> Iterator[str]:
+    """Yield what differs where the cylinders are in another order."""
+    another = in_another_order(text, random)
+    if another is None:
+        return
+    other_text, has_places = another
+    for command in COMMANDS:
+        if command in ("bearings", "stress", "balance") and not has_places:
+            continue
+        plain = run(text, command, "-f", "json")
+        other = run(other_text, command, "-f", "json")
+        yield from own_fault(other, f"cylinders {command}")
+        if (plain.exit_code == 0) != (other.exit_code == 0):
+            yield (
+                f"cylinders: {command} ends with {plain.exit_code} and {other.exit_code}: {other.stderr[-200:]}"
+            )
+        elif plain.exit_code == 0:
+            first = figures_of(plain.stdout, by_name=True)
+            second = figures_of(other.stdout, by_name=True)
+            for line in differences(first, second, ROUNDING):
+                yield f"cylinders: {command} {line}"
+
+
+# the laws
+
+
+def compared(text: str, other_text: str, name: str, differ: Any) -> Iterator[str]:
+    """Yield what differs in any command between a file and another one."""
     for command in COMMANDS:
         plain = run(text, command, "-f", "json")
         yield from own_fault(plain, command)
-        for name, other_text in texts.items():
-            other = run(other_text, command, "-f", "json")
-            yield from own_fault(other, f"{name} {command}")
-            if (plain.exit_code == 0) != (other.exit_code == 0):
-                yield f"{name}: {command} ends with {plain.exit_code} and {other.exit_code}: {other.stderr[-200:]}"
-            elif plain.exit_code == 0:
-                yield from (
-                    f"{name}: {command} {line}"
-                    for line in differences(plain.stdout, other.stdout, 1e-9)
-                )
-        if "cases" in keys or plain.exit_code != 0:
-            continue
-        in_case = run(
-            yaml.safe_dump(keys | {"cases": [case]}, sort_keys=False),
-            command,
-            "-f",
-            "json",
-            "--case",
-            "as set",
-        )
+        other = run(other_text, command, "-f", "json")
+        yield from own_fault(other, f"{name} {command}")
+        if (plain.exit_code == 0) != (other.exit_code == 0):
+            yield f"{name}: {command} ends with {plain.exit_code} and {other.exit_code}: {other.stderr[-200:]}"
+        elif plain.exit_code == 0:
+            for line in differ(plain.stdout, other.stdout):
+                yield f"{name}: {command} {line}"
+
+
+def same_figures(output: str, other: str) -> Iterator[str]:
+    """Yield where two documents have other figures."""
+    return differences(figures_of(output), figures_of(other), ROUNDING)
+
+
+def units(text: str, random: Random) -> Iterator[str]:
+    """Yield what differs with other units."""
+    return compared(text, text_of(in_other_units(yaml.safe_load(text))), "units", same_figures)
+
+
+def like(text: str, random: Random) -> Iterator[str]:
+    """Yield what differs with every cylinder written out."""
+    other = written_out(yaml.safe_load(text))
+    if other is not None:
+        yield from compared(text, text_of(other), "like", same_figures)
+
+
+def scale(text: str, random: Random) -> Iterator[str]:
+    """Yield what differs in another size."""
+    larger = {"ambient": _ABSENT["ambient"]} | in_another_size(yaml.safe_load(text))
+    if "pump" in larger:
+        larger["pump"] = {"liquid": {"vapour_pressure": _ABSENT["vapour_pressure"]}} | larger[
+            "pump"
+        ]
+    yield from compared(text, text_of(larger), "scale", figures_apart)
+
+
+def case(text: str, random: Random) -> Iterator[str]:
+    """Yield what differs between a load case and what `--set` gives."""
+    keys = yaml.safe_load(text)
+    if "cases" in keys:
+        return
+    with_case = text_of(keys | {"cases": [{"name": "as set", "set": {"speed": "77 rpm"}}]})
+    for command in COMMANDS:
+        in_case = run(with_case, command, "-f", "json", "--case", "as set")
         as_set = run(text, command, "-f", "json", "--set", "speed=77 rpm")
         if in_case.exit_code != as_set.exit_code:
             yield f"case: {command} ends with {in_case.exit_code} and {as_set.exit_code}"
         elif as_set.exit_code == 0:
-            yield from (
-                f"case: {command} {line}"
-                for line in differences(in_case.stdout, as_set.stdout, 0.0)
-            )
-        yield from csv_against_json(text, command, plain.stdout)
+            first, second = figures_of(in_case.stdout), figures_of(as_set.stdout)
+            for line in differences(first, second, 0.0):
+                yield f"case: {command} {line}"
+
+
+def csv_as_json(text: str, random: Random) -> Iterator[str]:
+    """Yield what csv has that json has not."""
+    for command in COMMANDS:
+        plain = run(text, command, "-f", "json")
+        if plain.exit_code == 0:
+            yield from csv_against_json(text, command, plain.stdout)
+
+
+LAWS = {
+    "batch": batch_against_alone,
+    "units": units,
+    "like": like,
+    "scale": scale,
+    "cylinders": ordered,
+    "case": case,
+    "csv": csv_as_json,
+}
 
 
 def csv_against_json(text: str, command: str, document: str) -> Iterator[str]:
@@ -375,6 +612,7 @@ def main() -> None:
     """Print every difference with the machine, and how many there were."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 200
     seed = int(sys.argv[2]) if len(sys.argv) > 2 else date.today().toordinal()
+    laws = [LAWS[word] for word in sys.argv[3:]] or [*LAWS.values()]
     texts = {
         f"random {number}": machine_file(np.random.default_rng([seed, number]))
         for number in range(count)
@@ -398,9 +636,10 @@ def main() -> None:
         found["valid"] += 1
         begin = time.process_time()
         try:
-            for line in chain(batch_against_alone(text, random), written_otherwise(text)):
-                found["differences"] += 1
-                print(f"{name}: {line}", flush=True)
+            for law in laws:
+                for line in law(text, random):
+                    found["differences"] += 1
+                    print(f"{name}: {line}", flush=True)
         except Exception:
             found["faults"] += 1
             print(f"{name}: {traceback.format_exc(limit=-4)}", flush=True)

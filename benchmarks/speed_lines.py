@@ -11,7 +11,7 @@ import time
 
 from kurbel import loads
 from kurbel.accuracy.extremes import Probe, all_cases
-from kurbel.accuracy.methods import Number, mp, mpf
+from kurbel.accuracy.methods import Precise, mp, mpf
 from kurbel.accuracy.shaft import EVERY, TextbookShaft, speed_of
 from kurbel.accuracy.textbook import DIGITS
 from kurbel.machine import Machine
@@ -21,7 +21,7 @@ ASKED = "flywheel omega@"
 MOST_ELEMENTS = 3000
 
 
-def compared(machine: Machine, case: Probe, truth: Number) -> str:
+def compared(machine: Machine, case: Probe, truth: Precise) -> str:
     """Return the line of a case: its reference, what the table has, and kurbel with its time."""
     angle = float(case.asked.removeprefix(ASKED))
     begin = time.perf_counter()

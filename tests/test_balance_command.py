@@ -43,3 +43,19 @@ def test_names_of_weights_are_words_for_programs_and_texts_for_people() -> None:
     assert "shaft_n_1_against_the_crank_A" in [row["weight"] for row in best["rows"]]
     assert all(re.fullmatch(r"\w+", row["weight"]) for row in best["rows"])
     assert "shaft n = 1, against the crank: A" in run("balance", "-", text=three).stdout
+
+
+def test_directions_of_symmetrical_machines_are_exactly_those_of_their_symmetry() -> None:
+    """Forces along the stroke line, or the middle of two banks, have its direction, whatever rounding adds."""
+    for name, exact in (("marine-diesel", 0.0), ("triplex-pump", 0.0), ("four-in-line", 0.0)):
+        assert set(directions(name, "F_direction")) == {exact}
+    assert set(directions("triplex-pump", "M_direction")) == {0.0}
+    assert directions("v8-cross-plane", "F_direction") == pytest.approx([45.0] * 3, abs=1e-12)
+
+
+def directions(name: str, column: str) -> list[float]:
+    """Directions of the orders that a machine has, in degrees."""
+    tables = parsed(name, "--orders")["machine_place_tables"]
+    (ellipses,) = [table for table in tables if table["id"] == "ellipses"]
+    (values,) = [one["values"] for one in ellipses["columns"] if one["id"] == column]
+    return [value for value in values if value is not None]

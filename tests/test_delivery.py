@@ -92,11 +92,13 @@ def test_own_quadrature_of_offset_and_unequal_machines() -> None:
     head = [math.pi / 4 * bore**2 for bore in (0.1, 0.12, 0.07)]
     crank = math.pi / 4 * (0.1**2 - 0.04**2)
     pump = pump_of(MIXED)
+    # the inner dead centre of the offset cylinder, from which positions count: crank and rod in one line
+    idc = math.degrees(math.asin(0.03 / (0.1 + 0.45)))
     own = by_quadrature(
         [
             (0.1, 0.45, 0.03, head[0], crank, 0.0),
-            (0.08, 0.3, 0.0, head[1], 0.0, 100.0),
-            (0.09, math.inf, 0.0, head[2], 0.0, 230.0),
+            (0.08, 0.3, 0.0, head[1], 0.0, 100.0 + idc),
+            (0.09, math.inf, 0.0, head[2], 0.0, 230.0 + idc),
         ]
     )
     assert pump["volume_fluctuation"].value == pytest.approx(own, rel=1e-9)

@@ -17,7 +17,7 @@ from pathlib import Path
 from textwrap import indent
 from typing import NamedTuple
 
-from kurbel.declared.units import MOST_ITEMS, MOST_POINTS
+from kurbel.declared.units import MOST_ITEMS, MOST_POINTS, MOST_SHAFT_ITEMS
 from kurbel.designs.plan import MOST_ROWS
 from kurbel.traces.read import LARGEST_FILE, MOST_NUMBERS
 
@@ -33,7 +33,8 @@ How large traces, sweeps and machines may be, and what they cost. Times are proc
 | --- | --: |
 | file of a trace | {LARGEST_FILE // 2**20} MiB, {MOST_NUMBERS:,} numbers |
 | samples of one cycle, points of one diagram | {MOST_POINTS:,} |
-| items of one list of the machine file: cylinders, masses of a shaft, load cases | {MOST_ITEMS} |
+| items of one list of the machine file: cylinders, load cases | {MOST_ITEMS} |
+| items of a shaft line: masses, and the segments between them | {MOST_SHAFT_ITEMS} |
 | rows of a sweep | {MOST_ROWS:,}, more with `--yes` |
 
 Beyond these kurbel stops with a message, before it computes."""
@@ -58,7 +59,7 @@ def main() -> None:
         head = _HEAD.format(
             processor=platform.machine(), python=platform.python_version(), start=start
         )
-        print("\n\n".join([head, *_traces(), *_machines(), *_sweeps()]))
+        print("\n\n".join([head, *_traces(), *_machines(), *_sweeps(), *_uncertainties()]))
 
 
 def _spent(words: Sequence[str]) -> Spent:
@@ -145,7 +146,7 @@ def _machines() -> Iterator[str]:
     yield "## Cylinders\n\nEqual cylinders with different crank positions, `--key-values` of each command:"
     yield _table(("cylinders", "`forces`", "`flywheel`", "`balance`"), rows)
     rows = []
-    for masses in (3, 12, MOST_ITEMS // 2):
+    for masses in (3, 12, 50, MOST_SHAFT_ITEMS // 2):
         between = "".join(
             f"  - {{inertia: 0.1 kg m2, damping: 1 N m s/rad}}\n  - {{stiffness: {1 + k % 3} MN m/rad}}\n"
             for k in range(masses - 2)
@@ -186,6 +187,47 @@ def _sweeps() -> Iterator[str]:
     yield _table(("machine", "varies", "column", "rows", "time, memory"), rows)
     yield """Machines of one kind are computed together; other mechanisms and commands are computed one machine after
 another ([one solver](sweeps.md#one-solver)). `--jobs` and `--shard` divide the work."""
+
+
+def _uncertainties() -> Iterator[str]:
+    """Measure uncertainties of first order, and such as need a sample."""
+    Path("five.yaml").write_text(_FIVE_CYLINDERS, encoding="utf-8")
+    rows = []
+    for command, spread, how in (
+        ("forces", "1 %", "first order"),
+        ("forces", "25 %", "2,000 machines sampled"),
+        ("flywheel", "1 %", "first order"),
+        ("flywheel", "25 %", "200 machines sampled"),
+    ):
+        words = [command, "five.yaml", "--uncertainty", f"cylinders.0.rod={spread}"]
+        rows.append((f"`{command}`", spread, how, str(_spent([*words, "--key-values"]))))
+    yield """## Uncertainties
+
+`--uncertainty cylinders.0.rod=…` of a compressor with five unequal cylinders and a load with a slip of 2·10⁻⁶, a stiff one:"""
+    yield _table(("command", "of the rod", "by", "time, memory"), rows)
+    yield """Where a key value bends over the width of an uncertainty, it comes from a sample: 2,000 machines, or 200 where each
+takes long by itself (measured traces, other mechanisms, `torsion`, and `flywheel` under a load that depends on the
+speed). The column `sample` of the table says which. `--key-values NAMES` takes only these key values, and the sample
+only those of them that need it."""
+
+
+_FIVE_CYLINDERS = """speed: 300 rpm
+flywheel: {inertia: 20 kg m2}
+load: {slip: 2e-6}
+cylinders:
+  - name: a
+    stroke: 200 mm
+    rod: 500 mm
+    bore: 250 mm
+    masses: {reciprocating: 40 kg}
+    indicator:
+      pressures: absolute
+      head_end: {compressor: {suction: 1 bar, delivery: 4 bar, clearance: 0.05, exponent: 1.3}}
+  - {like: a, crank_position: 72 deg, bore: 255 mm}
+  - {like: a, crank_position: 144 deg, bore: 260 mm}
+  - {like: a, crank_position: 216 deg, bore: 265 mm}
+  - {like: a, crank_position: 288 deg, bore: 270 mm}
+"""
 
 
 def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

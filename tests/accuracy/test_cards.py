@@ -4,7 +4,7 @@ import mpmath
 import pytest
 
 from kurbel import loads
-from kurbel.accuracy.cards import Drawing, drawn
+from kurbel.accuracy.cards import CardProcess, drawn
 from kurbel.accuracy.methods import mp
 from kurbel.accuracy.textbook import DIGITS, Textbook
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
@@ -13,7 +13,7 @@ from kurbel.solver.case import Case
 mpf = mpmath.mpf
 
 
-def area(drawing: Drawing) -> mpmath.mpf:
+def area(drawing: CardProcess) -> mpmath.mpf:
     """Work over the stroke volume: the integral of p by z, forward and back."""
     return sum(
         mp.quad(lambda z, line=line: drawing.at(line, z), [line.begin, line.end])

@@ -8,15 +8,15 @@ import pytest
 
 from kurbel import loads
 from kurbel.accuracy import marching
-from kurbel.accuracy.extremes import table
+from kurbel.accuracy.extremes import table_lines
 from kurbel.accuracy.marching import Marched, Problem, rivals
 from kurbel.accuracy.methods import mp
 from kurbel.accuracy.shaft import (
     MOST,
     TextbookShaft,
     collocation,
-    in_floats,
-    periodic,
+    equation_in_floats,
+    periodic_solution,
     speed_of,
     without_reference,
 )
@@ -34,7 +34,7 @@ COUPLED = ENGINE.replace(
     "load:", "coupling: {stiffness: 5e5 N m/rad, damping: 2e3 N m s/rad, inertia: 600 kg m2}, load:"
 )
 SLIP = ENGINE.replace("LOAD", "{slip: 0.2}")
-SCENES = {loads(text).name: (text, columns) for _, text, *columns in table("stiff.tsv")}
+SCENES = {loads(text).name: (text, columns) for _, text, *columns in table_lines("stiff.tsv")}
 
 
 def shaft_of(text: str) -> TextbookShaft:
@@ -50,7 +50,7 @@ def shaft() -> TextbookShaft:
 
 
 def problem_of(shaft: TextbookShaft) -> Callable[[], Problem]:
-    return lambda: Problem(in_floats(shaft.equation), shaft.fits, shaft.cycle)
+    return lambda: Problem(equation_in_floats(shaft.equation), shaft.fits, shaft.cycle)
 
 
 @pytest.fixture(scope="module")
@@ -65,8 +65,8 @@ def runs(shaft: TextbookShaft) -> dict[tuple[str, str], Marched]:
 def test_the_load_takes_what_the_torque_gives(text: str, load: str) -> None:
     """Over a cycle the works of torque and load are equal: the mean load is the mean torque."""
     shaft = shaft_of(text.replace("LOAD", load))
-    equation = in_floats(shaft.equation)
-    mesh = periodic(equation, shaft.fits.at, shaft.edges.astype(float), 14)
+    equation = equation_in_floats(shaft.equation)
+    mesh = periodic_solution(equation, shaft.fits.at, shaft.edges.astype(float), 14)
     w = np.asarray(
         equation.speed(mesh.energy, list(mesh.y[:, :, 1:])) if text == ENGINE else mesh.y[2][:, 1:]
     )

@@ -9,6 +9,7 @@ from scipy.integrate import trapezoid
 
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert
+from kurbel.errors import UsageError
 from kurbel.pictures.picture import Panel, Picture
 from kurbel.pictures.picture_source import PictureOptions, sampled
 from kurbel.pictures.pictures import PICTURES, pictures
@@ -169,6 +170,27 @@ def test_the_tip_of_the_free_force_is_the_solvers() -> None:
     assert (mark.figure.value, mark.figure.at_deg) == (largest.value / 1e3, largest.degrees)
     assert np.hypot(mark.x, mark.y) == pytest.approx(largest.value / 1e3, rel=1e-14)
     assert panel.equal
+
+
+def test_the_path_of_a_journal_is_that_of_its_columns_within_the_clearance() -> None:
+    """A point is as far from the middle as the journal is eccentric, in the direction of the thinnest film."""
+    case, pictures_ = case_of("gas-engine"), drawn("gas-engine", "journal-orbit")
+    assert [picture.of for picture in pictures_] == [part.name for part in case.bearings.parts]
+    for picture, part in zip(pictures_, case.bearings.parts):
+        (panel,) = picture.panels
+        columns = part.columns(np.linspace(0.1, 719.9, 500), "eccentricity", "film_direction")
+        direction = np.exp(1j * np.radians(columns["film_direction"]))
+        assert off_line(panel.curves[0], columns["eccentricity"] * direction) <= 2e-3
+        clearance = panel.curves[-1]
+        assert np.hypot(clearance.x, clearance.y) == pytest.approx(1.0, rel=1e-14)
+        mark, *_ = panel.marks
+        assert mark.figure.value == part.eccentricity_max.value
+        assert np.hypot(mark.x, mark.y) == pytest.approx(part.eccentricity_max.value, rel=1e-9)
+
+
+def test_a_machine_without_an_oil_film_has_no_path_of_a_journal() -> None:
+    with pytest.raises(UsageError, match="has no picture 'journal-orbit'"):
+        drawn("waterworks", "journal-orbit")
 
 
 def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:

@@ -13,7 +13,7 @@ from scipy.special import ellipk
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.bearings import Bearing
+from kurbel.solver.chapters.bearings import Bearing, BearingColumns
 from representative import CONFIGS, few
 
 ENGINE = re.sub(r"(?m)^oil_film:.*\n(  .*\n)+", "", CONFIGS["gas-engine"].read_text("utf-8"))
@@ -283,3 +283,10 @@ def test_work_of_friction_is_that_of_a_cycle_of_the_machine() -> None:
     # S = P/cos ψ over half a turn: 2 K(λ²)
     force = 2e5 * math.pi / 4 * 0.09**2
     assert own[1] == pytest.approx(0.05 * 0.025 * force * 2 * ellipk(0.3**2), rel=1e-12)
+
+
+def test_a_load_that_is_only_rounding_has_no_direction_of_its_own() -> None:
+    """Beside a largest load of 2 kN what is 1e-13 kN is none, and has the direction of none: 0°."""
+    loads_at = np.array([1000 + 1000j, -1e-10 - 1e-10j, 0.0, -2000.0])
+    columns = BearingColumns(np.arange(4.0), {"engine": loads_at}, 2000.0, None)
+    assert columns.direction("engine") == pytest.approx([45.0, 0.0, 0.0, 180.0], abs=1e-12)

@@ -14,7 +14,12 @@ from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import on_crosshead_pin, on_pin
 from representative import CONFIGS, few
 
-ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
+ENGINE = (
+    CONFIGS["gas-engine"]
+    .read_text("utf-8")
+    .replace("clearance: 0.06 mm, diameter: 120 mm", "clearance: 0.06 mm")
+)
+"""Friction gives the diameter of the crosshead pin."""
 RUBS = """friction: {crosshead: 0.05, crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm,
            journals: 0.04}
 """

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import NamedTuple, Union
 
-from kurbel.accuracy.methods import Number, mp, mpf
+from kurbel.accuracy.methods import Precise, mp, mpf
 from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam
 from kurbel.machine.indicator import Card, Rectangle
 
@@ -19,24 +19,24 @@ KNOWN_CARDS = (Card, Rectangle, Steam, Compressor, Otto, Diesel)
 class Fractions(NamedTuple):
     """z of a steam card at the events that a valve sets, or that the card itself has."""
 
-    cut_off: Number
-    release: Number
-    compression: Number
-    lead: Number
+    cut_off: Precise
+    release: Precise
+    compression: Precise
+    lead: Precise
 
 
-class Line(NamedTuple):
+class StrokeLine(NamedTuple):
     """A change of the gas on a stroke from z to z′, p to p′: straight, or with an exponent along p V^n."""
 
     stroke: int
-    begin: Number
-    pressure: Number
-    end: Number
-    end_pressure: Number
-    exponent: Number | None
-    clearance: Number
+    begin: Precise
+    pressure: Precise
+    end: Precise
+    end_pressure: Precise
+    exponent: Precise | None
+    clearance: Precise
 
-    def at(self, z: Number) -> Number:
+    def at(self, z: Precise) -> Precise:
         """Return the pressure at z."""
         if self.exponent is None:
             share = (z - self.begin) / (self.end - self.begin)
@@ -46,43 +46,43 @@ class Line(NamedTuple):
         )
 
 
-class Drawing(NamedTuple):
+class CardProcess(NamedTuple):
     """The lines of a card, and the diagram factor about the back pressure."""
 
-    lines: tuple[Line, ...]
-    factor: Number = 1
-    back: Number = 0
+    lines: tuple[StrokeLine, ...]
+    factor: Precise = 1
+    back: Precise = 0
 
-    def at(self, line: Line, z: Number) -> Number:
+    def at(self, line: StrokeLine, z: Precise) -> Precise:
         """Return the pressure at z on one of the lines."""
         return self.back + self.factor * (line.at(z) - self.back)
 
 
 def drawn(
     card: KnownCard,
-    lift: Number,
+    lift: Precise,
     is_four_stroke: bool,
-    ambient: Number = 0,
+    ambient: Precise = 0,
     events: Fractions | None = None,
-) -> Drawing:
+) -> CardProcess:
     """Return the process of a card.
 
     lift: in Pa, makes the pressures of the card absolute; ambient: absolute, in Pa; events: those of a valve.
     """
     if isinstance(card, Card):
-        return Drawing(tuple(_by_points(card, lift)))
+        return CardProcess(tuple(_by_points(card, lift)))
     if isinstance(card, Rectangle):
-        return Drawing(tuple(_rectangle(card, ambient, lift, is_four_stroke)))
+        return CardProcess(tuple(_rectangle(card, ambient, lift, is_four_stroke)))
     lines = tuple(_ideal(card, lift, is_four_stroke, events))
     lines = tuple(line for line in lines if line.begin != line.end)
     if isinstance(card, Compressor):
-        return Drawing(lines)
-    return Drawing(lines, mpf(card.diagram_factor), mpf(card.back_pressure) + lift)
+        return CardProcess(lines)
+    return CardProcess(lines, mpf(card.diagram_factor), mpf(card.back_pressure) + lift)
 
 
 def _rectangle(
-    card: Rectangle, ambient: Number, lift: Number, is_four_stroke: bool
-) -> Iterator[Line]:
+    card: Rectangle, ambient: Precise, lift: Precise, is_four_stroke: bool
+) -> Iterator[StrokeLine]:
     """Yield level lines: of the mean pressure the expansion of what drives, or the compression of what is driven."""
     level = ambient if card.level is None else mpf(card.level) + lift
     strokes = 4 if is_four_stroke else 2
@@ -91,10 +91,10 @@ def _rectangle(
     for stroke in range(strokes):
         pressure = level + abs(mean) if stroke == raised else level
         begin = mpf(stroke % 2)
-        yield Line(stroke, begin, pressure, 1 - begin, pressure, None, mpf(0))
+        yield StrokeLine(stroke, begin, pressure, 1 - begin, pressure, None, mpf(0))
 
 
-def _by_points(card: Card, lift: Number) -> Iterator[Line]:
+def _by_points(card: Card, lift: Precise) -> Iterator[StrokeLine]:
     """Yield the lines between the points of a card; p V^n runs through both ends."""
     clearance = mpf(card.clearance or 0)
     for stroke, line in enumerate(card.lines):
@@ -105,25 +105,27 @@ def _by_points(card: Card, lift: Number) -> Iterator[Line]:
             exponent = None
             if card.interpolate != "linear":
                 exponent = mp.log(next_p / p) / mp.log((z + clearance) / (next_z + clearance))
-            yield Line(stroke, z, p, next_z, next_p, exponent, clearance)
+            yield StrokeLine(stroke, z, p, next_z, next_p, exponent, clearance)
 
 
 def _ideal(
-    card: IdealCard, lift: Number, is_four_stroke: bool, events: Fractions | None
-) -> Iterator[Line]:
+    card: IdealCard, lift: Precise, is_four_stroke: bool, events: Fractions | None
+) -> Iterator[StrokeLine]:
     """Yield the lines of an ideal card, stroke by stroke."""
     clearance = mpf(card.clearance)
 
-    def level(stroke: int, begin: Number, pressure: Number, end: Number) -> Line:
-        return Line(stroke, mpf(begin), pressure, mpf(end), pressure, None, clearance)
+    def level(stroke: int, begin: Precise, pressure: Precise, end: Precise) -> StrokeLine:
+        return StrokeLine(stroke, mpf(begin), pressure, mpf(end), pressure, None, clearance)
 
-    def curve(stroke: int, begin: Number, pressure: Number, end: Number, exponent: float) -> Line:
+    def curve(
+        stroke: int, begin: Precise, pressure: Precise, end: Precise, exponent: float
+    ) -> StrokeLine:
         n = mpf(exponent)
         begin, end = mpf(begin), mpf(end)
         end_pressure = pressure
         if begin != end:  # without a distance there may be no volume
             end_pressure = pressure * ((begin + clearance) / (end + clearance)) ** n
-        return Line(stroke, begin, pressure, end, end_pressure, n, clearance)
+        return StrokeLine(stroke, begin, pressure, end, end_pressure, n, clearance)
 
     if isinstance(card, Steam):
         if events is None:
@@ -137,7 +139,9 @@ def _ideal(
         yield level(1, 1, exhaust, events.compression)
         compression = curve(1, events.compression, exhaust, events.lead, card.exponent)
         yield compression
-        yield Line(1, events.lead, compression.end_pressure, mpf(0), admission, None, clearance)
+        yield StrokeLine(
+            1, events.lead, compression.end_pressure, mpf(0), admission, None, clearance
+        )
     elif isinstance(card, Compressor):
         yield from _compressor(card, lift)
     else:
@@ -154,7 +158,7 @@ def _ideal(
         yield compression
 
 
-def _compressor(card: Compressor, lift: Number) -> Iterator[Line]:
+def _compressor(card: Compressor, lift: Precise) -> Iterator[StrokeLine]:
     """Yield what the valves make of expansion and compression: they open where p V^n meets the pressure outside."""
     clearance, suction, delivery = (
         mpf(card.clearance),
@@ -162,13 +166,13 @@ def _compressor(card: Compressor, lift: Number) -> Iterator[Line]:
         mpf(card.delivery) + lift,
     )
     if card.unloaded:
-        yield Line(0, mpf(0), suction, mpf(1), suction, None, clearance)
-        yield Line(1, mpf(1), suction, mpf(0), suction, None, clearance)
+        yield StrokeLine(0, mpf(0), suction, mpf(1), suction, None, clearance)
+        yield StrokeLine(1, mpf(1), suction, mpf(0), suction, None, clearance)
         return
     expansion, exponent = mpf(card.of_expansion), mpf(card.exponent)
     fills = clearance * (delivery / suction) ** (1 / expansion) - clearance
     empties = (1 + clearance) * (suction / delivery) ** (1 / exponent) - clearance
-    yield Line(0, mpf(0), delivery, fills, suction, expansion, clearance)
-    yield Line(0, fills, suction, mpf(1), suction, None, clearance)
-    yield Line(1, mpf(1), suction, empties, delivery, exponent, clearance)
-    yield Line(1, empties, delivery, mpf(0), delivery, None, clearance)
+    yield StrokeLine(0, mpf(0), delivery, fills, suction, expansion, clearance)
+    yield StrokeLine(0, fills, suction, mpf(1), suction, None, clearance)
+    yield StrokeLine(1, mpf(1), suction, empties, delivery, exponent, clearance)
+    yield StrokeLine(1, empties, delivery, mpf(0), delivery, None, clearance)

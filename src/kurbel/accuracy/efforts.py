@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import Union
 
-from kurbel.accuracy.methods import Number, mp, mpf
+from kurbel.accuracy.methods import Precise, mp, mpf
 from kurbel.machine.turning import Effort, Harmonics
 
 Diagram = Union[Effort, Harmonics]
 
 
-def knees_of(diagram: Diagram, cycle: int) -> Iterator[Number]:
+def knees_of(diagram: Diagram, cycle: int) -> Iterator[Precise]:
     """Yield the angles in degrees of a cycle at which a diagram bends or jumps."""
     if isinstance(diagram, Harmonics):
         return
@@ -20,13 +20,13 @@ def knees_of(diagram: Diagram, cycle: int) -> Iterator[Number]:
             yield (mpf(angle) + lap * period) % cycle
 
 
-def diagram_of(diagram: Diagram) -> Callable[[Number, Number], Number]:
+def diagram_of(diagram: Diagram) -> Callable[[Precise, Precise], Precise]:
     """Return the torque in N m at an angle in degrees; within: any angle of the same piece."""
     if isinstance(diagram, Harmonics):
         mean = mpf(diagram.mean)
         terms = [(mpf(order), mpf(cos), mpf(sin)) for order, cos, sin in diagram.terms]
 
-        def of_harmonics(phi: Number, within: Number) -> Number:
+        def of_harmonics(phi: Precise, within: Precise) -> Precise:
             torque = mean
             for order, cos, sin in terms:
                 turned = order * phi / 180
@@ -38,7 +38,7 @@ def diagram_of(diagram: Diagram) -> Callable[[Number, Number], Number]:
     points = [(mpf(angle), mpf(torque)) for angle, torque in zip(diagram.angles, diagram.torques)]
     period = points[-1][0]
 
-    def between_points(phi: Number, within: Number) -> Number:
+    def between_points(phi: Precise, within: Precise) -> Precise:
         inside = within % period
         shift = within - inside
         for (angle, torque), (next_angle, next_torque) in pairwise(points):

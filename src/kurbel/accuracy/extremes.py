@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.accuracy.linkages import motion_of
-from kurbel.accuracy.methods import Number, largest_and_smallest, mp, mpf
+from kurbel.accuracy.methods import Precise, largest_and_smallest, mp, mpf
 from kurbel.accuracy.textbook import DIGITS, STEPS, Textbook
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
@@ -60,7 +60,7 @@ class Verdict(NamedTuple):
         return self.verdict == "passed"
 
 
-def table(name: str) -> list[list[str]]:
+def table_lines(name: str) -> list[list[str]]:
     """Return the lines of a table of this package, without its head."""
     with open(Path(__file__).parent / name, encoding="utf-8", newline="") as file:
         return list(csv.reader(file, delimiter="\t", quoting=csv.QUOTE_NONE))[1:]
@@ -68,7 +68,7 @@ def table(name: str) -> list[list[str]]:
 
 def all_cases() -> list[Probe]:
     """Return the cases of the table."""
-    return [Probe(*line) for line in table("extremes.tsv")]
+    return [Probe(*line) for line in table_lines("extremes.tsv")]
 
 
 def fine_line() -> str:
@@ -137,7 +137,7 @@ def _missed(case: Probe, textbook: Textbook, answer: float | None) -> tuple[str,
         return mp.nstr(truth, 20), None if missed is None or mp.isnan(missed) else float(missed)
 
 
-def exact(textbook: Textbook, asked: str) -> Number:
+def exact(textbook: Textbook, asked: str) -> Precise:
     """Return a requested quantity by the textbook, in SI, with the precision set in mpmath."""
     machine = textbook.machine
     command, _, quantity = asked.partition(" ")

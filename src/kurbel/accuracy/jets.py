@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from kurbel.accuracy.methods import Number, mp
+from kurbel.accuracy.methods import Precise, mp
 
 
 @dataclass(frozen=True)
 class Jet:
     """A real or complex number, and its first and second derivative by φ in radians."""
 
-    value: Number
-    rate: Number = 0
-    bend: Number = 0
+    value: Precise
+    rate: Precise = 0
+    bend: Precise = 0
 
     def __add__(self, other: Jet) -> Jet:
         return Jet(self.value + other.value, self.rate + other.rate, self.bend + other.bend)
@@ -31,7 +31,7 @@ class Jet:
         divisor = other.value
         return self * other.through(1 / divisor, -1 / divisor**2, 2 / divisor**3)
 
-    def through(self, value: Number, first: Number, second: Number) -> Jet:
+    def through(self, value: Precise, first: Precise, second: Precise) -> Jet:
         """Return a function of this number, from its value and its derivatives by the number."""
         return Jet(value, first * self.rate, second * self.rate**2 + first * self.bend)
 
@@ -59,7 +59,7 @@ class Jet:
         return self.through(mp.log(number), 1 / number, -1 / number**2).imaginary()
 
 
-def turned(phi: Number) -> Jet:
+def turned(phi: Precise) -> Jet:
     """Return the unit vector at a crank angle in degrees, as a complex number."""
     turn = mp.expjpi(phi / 180)
     return Jet(turn, 1j * turn, -turn)

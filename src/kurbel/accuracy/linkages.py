@@ -13,7 +13,7 @@ from typing import NamedTuple, Union
 import numpy as np
 
 from kurbel.accuracy.jets import Jet, turned
-from kurbel.accuracy.methods import Number, mp, mpf, roots
+from kurbel.accuracy.methods import Precise, mp, mpf, roots_inside
 from kurbel.arrays import Array
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
@@ -27,15 +27,20 @@ _STEPS = 48
 class Stance(NamedTuple):
     """A mechanism: x, dx/dφ and d²x/dφ² in m, of what only swings θ in radians; sine and cosine of a rod's angle."""
 
-    x: Number
-    slope: Number
-    curvature: Number
-    sin_psi: Number
-    cos_psi: Number
+    x: Precise
+    slope: Precise
+    curvature: Precise
+    sin_psi: Precise
+    cos_psi: Precise
 
 
 def stance(
-    r: Number, length: Number, e: Number, sin: Number, cos: Number, sqrt: Callable[[Number], Number]
+    r: Precise,
+    length: Precise,
+    e: Precise,
+    sin: Precise,
+    cos: Precise,
+    sqrt: Callable[[Precise], Precise],
 ) -> Stance:
     """Return the motion at a crank angle, R 285, 288, 291, of a crank r, a rod and an offset e in m."""
     if math.isinf(length):
@@ -55,7 +60,7 @@ class RodMotion:
     the working one; never_returns: whether the output turns on.
     """
 
-    start: Number = mpf(0)
+    start: Precise = mpf(0)
     works_out, never_returns = True, False
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -67,7 +72,7 @@ class RodMotion:
         self.ends = np.array([inner, outer, 360 + inner])
         self.stroke = self.at(self.ends[1]).x
 
-    def at(self, phi: Number) -> Stance:
+    def at(self, phi: Precise) -> Stance:
         """Return the motion at a crank angle."""
         return self.at_pin(sin=mp.sinpi(phi / 180), cos=mp.cospi(phi / 180))
 
@@ -110,7 +115,7 @@ class LeverMotion:
         reach = arm.size()
         return arm / reach, reach
 
-    def at(self, phi: Number) -> Stance:
+    def at(self, phi: Precise) -> Stance:
         """Return the motion at a crank angle."""
         turn = turned(phi)
         lever, _ = self._direction(turn)
@@ -126,7 +131,7 @@ class LeverMotion:
             ram = ram + (Jet(self._link**2) - aside * aside).root()
         return Stance(ram.value - self._middle, ram.rate, ram.bend, mpf(0), mpf(1))
 
-    def torque_of(self, load: Number, phi: Number) -> Number:
+    def torque_of(self, load: Precise, phi: Precise) -> Precise:
         """Return the torque on the shaft of a force on the ram, or of a moment on the lever."""
         turn = turned(phi)
         lever, reach = self._direction(turn)
@@ -166,7 +171,7 @@ class LinkageMotion:
         coupler = diagonal / length * (foot + Jet(1j) * height)
         return coupler, coupler - diagonal
 
-    def at(self, phi: Number) -> Stance:
+    def at(self, phi: Precise) -> Stance:
         """Return the motion at a crank angle."""
         turn = turned(phi)
         _, rocker = self._members(turn)
@@ -175,7 +180,7 @@ class LinkageMotion:
             swing = (rocker / turn).bearing() + Jet(mp.radians(phi), 1)
         return Stance(swing.value, swing.rate, swing.bend, mpf(0), mpf(1))
 
-    def torque_of(self, load: Number, phi: Number) -> Number:
+    def torque_of(self, load: Precise, phi: Precise) -> Precise:
         """Return the torque on the shaft of a moment on the rocker, which the coupler balances."""
         turn = turned(phi)
         coupler, rocker = self._members(turn)
@@ -187,18 +192,18 @@ class ParallelMotion:
     """Two cranks that turn alike, with elastic couplers on two pairs at 90°. Names as of a `RodMotion`."""
 
     works_out, never_returns = True, True
-    start: Number = mpf(0)
+    start: Precise = mpf(0)
 
     def __init__(self, mechanism: ParallelCrank) -> None:
         self.r = mpf(mechanism.crank)
         self.ends = np.array([mpf(0), mpf(180), mpf(360)])
         self.stroke = 2 * mp.pi
 
-    def at(self, phi: Number) -> Stance:
+    def at(self, phi: Precise) -> Stance:
         """Return the motion at a crank angle."""
         return Stance(mp.radians(phi), mpf(1), mpf(0), mpf(0), mpf(1))
 
-    def torque_of(self, load: Number, phi: Number) -> Number:
+    def torque_of(self, load: Precise, phi: Precise) -> Precise:
         """Return the torque on the shaft of a moment on the second crank: each coupler takes as it is strained."""
         pin = self.r * turned(phi).value
         strains = [moment(arm, mpf(1)) for arm in (pin, 1j * pin)]
@@ -209,10 +214,10 @@ class ParallelMotion:
 
 OtherMotion = Union[LeverMotion, LinkageMotion, ParallelMotion]
 """A mechanism of which only the joints are known."""
-Motion = Union[RodMotion, OtherMotion]
+TextbookMotion = Union[RodMotion, OtherMotion]
 
 
-def motion_of(mechanism: Mechanism) -> Motion:
+def motion_of(mechanism: Mechanism) -> TextbookMotion:
     """Return the motion of a mechanism."""
     if isinstance(mechanism, SlottedLever):
         return LeverMotion(mechanism)
@@ -223,7 +228,7 @@ def motion_of(mechanism: Mechanism) -> Motion:
     return RodMotion(mechanism)
 
 
-def moment(arm: Number, force: Number) -> Number:
+def moment(arm: Precise, force: Precise) -> Precise:
     """Return the moment of a force on an arm, positive in the sense of rotation."""
     return mp.im(mp.conj(arm) * force)
 
@@ -234,7 +239,7 @@ def dead_centres(motion: LeverMotion | LinkageMotion) -> Array:
     if motion.never_returns:
         return halves
     slopes = np.frompyfunc(lambda phi, _: motion.at(phi).slope, 2, 1)
-    found, _ = roots(slopes, halves[:-1] - 180, halves[1:] - 180, _STEPS)
+    found, _ = roots_inside(slopes, halves[:-1] - 180, halves[1:] - 180, _STEPS)
     inner = next(angle for angle in found if motion.at(angle).curvature > 0)
     outer = next(angle for angle in found if motion.at(angle).curvature < 0)
     if outer < inner:

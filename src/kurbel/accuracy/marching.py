@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.accuracy.methods import scipy_integrate
-from kurbel.accuracy.shaft import EVERY, ElasticShaft, Equation, Fits, SpeedOfShaft
+from kurbel.accuracy.shaft import EVERY, ElasticShaft, Fits, ShaftEquation, SpeedOfShaft
 from kurbel.arrays import Array
 
 _CYCLES = 20
@@ -52,7 +52,7 @@ class Course(NamedTuple):
 class Problem:
     """The equation in floats; cycle in degrees."""
 
-    def __init__(self, equation: Equation, fits: Fits, cycle: int) -> None:
+    def __init__(self, equation: ShaftEquation, fits: Fits, cycle: int) -> None:
         self.equation, self.fits, self.cycle = equation, fits, cycle
         self.evaluations = 0
         self._edges = fits.edges.tolist()

@@ -18,11 +18,11 @@ from numpy.polynomial import chebyshev
 from kurbel.arrays import Array
 
 mp, mpf = mpmath.mp, mpmath.mpf
-Number = Any
+Precise = Any
 """An mpf, or, where a function takes both, a float or an array of either."""
 Function = Callable[[Array, Array], Array]
 """Takes angles (n,) in degrees, and for each one within its piece, which selects the side of a corner."""
-Found = Union[Number, tuple[Number, Number]]
+Found = Union[Precise, tuple[Precise, Precise]]
 """One value, or the largest and the smallest."""
 
 
@@ -38,7 +38,7 @@ def _on(function: Function, low: Array, high: Array, shares: Array) -> Array:
     return function(phi.ravel(), np.repeat((low + high) / 2, len(shares))).reshape(phi.shape)
 
 
-def roots(function: Function, low: Array, high: Array, parts: int) -> tuple[Array, Array]:
+def roots_inside(function: Function, low: Array, high: Array, parts: int) -> tuple[Array, Array]:
     """Return the roots (m,) inside n pieces, looked for at equal steps, and the middle of the piece of each.
 
     Regula falsi in which the end that stays counts half in the next step.
@@ -103,7 +103,7 @@ def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Fou
     if quantity[0] == "A":
         return radians(whole)
     mean = whole / (edges[-1] - edges[0])
-    crossings, _ = roots(
+    crossings, _ = roots_inside(
         lambda phi, within: function(phi, within) - mean, edges[:-1], edges[1:], count
     )
     cuts = merged(np.append(edges, crossings))
@@ -113,14 +113,14 @@ def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Fou
     return radians(heights.max() - heights.min())
 
 
-def largest_and_smallest(function: Function, edges: Array, count: int) -> tuple[Number, Number]:
+def largest_and_smallest(function: Function, edges: Array, count: int) -> tuple[Precise, Precise]:
     """Return the largest and the smallest value, at the ends of the pieces or at a root of the derivative."""
     low, high, step = edges[:-1], edges[1:], mpf("1e-10") if edges.dtype == object else 1e-4
 
     def rise(phi: Array, within: Array) -> Array:
         return function(phi + step, within) - function(phi - step, within)
 
-    tops, within = roots(rise, low + 2 * step, high - 2 * step, count)
+    tops, within = roots_inside(rise, low + 2 * step, high - 2 * step, count)
     middles = (low + high) / 2
     values = function(np.concatenate((low, high, tops)), np.concatenate((middles, middles, within)))
     return values.max(), values.min()

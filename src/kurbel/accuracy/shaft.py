@@ -20,7 +20,7 @@ from typing import NamedTuple, Union
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from kurbel.accuracy.methods import Number, integrals, largest_and_smallest, merged, mp, mpf
+from kurbel.accuracy.methods import Precise, integrals, largest_and_smallest, merged, mp, mpf
 from kurbel.accuracy.textbook import DIGITS, STEPS, Textbook, TextbookMachine, needed, unknown
 from kurbel.arrays import Array
 from kurbel.machine import Machine
@@ -50,9 +50,9 @@ class SpeedOfShaft(NamedTuple):
     """What is compared: ω in rad/s every 30° (n,), δ, ω_max, and the largest and smallest torque in a coupling."""
 
     omega: Array
-    delta: Number
-    omega_max: Number
-    M_K: tuple[Number, ...]
+    delta: Precise
+    omega_max: Precise
+    M_K: tuple[Precise, ...]
 
 
 # the equations
@@ -61,17 +61,17 @@ class SpeedOfShaft(NamedTuple):
 class LoadLaw(NamedTuple):
     """The load torque in N m over w, by slip s or power k; mean: at the nominal speed."""
 
-    mean: Number
+    mean: Precise
     slip: float | None
     power: float | None
 
-    def torque(self, w: Number) -> Number:
+    def torque(self, w: Precise) -> Precise:
         """Return M_load."""
         if self.slip is not None:
             return self.mean + abs(self.mean) / self.slip * w
         return self.mean * (1 + w) ** self.power
 
-    def slope(self, w: Number) -> Number:
+    def slope(self, w: Precise) -> Precise:
         """Return dM_load/dw."""
         if self.slip is not None:
             return abs(self.mean) / self.slip + 0 * w
@@ -83,14 +83,14 @@ class RigidShaft(NamedTuple):
     """y = (z,) in J; torque M in N m, and energy ½ J(φ) ω_n² in J; nominal: ω_n in rad/s."""
 
     load: LoadLaw
-    nominal: Number
+    nominal: Precise
     unknowns: int = 1
 
-    def start(self, energy: Number) -> list[Number]:
+    def start(self, energy: Precise) -> list[Precise]:
         """Return y at uniform rotation."""
         return [0 * energy]
 
-    def speed(self, energy: Number, y: Sequence[Number]) -> Number:
+    def speed(self, energy: Precise, y: Sequence[Precise]) -> Precise:
         """Return w."""
         r = y[0] / energy
         return r / (1 + (1 + r) ** 0.5)
@@ -99,11 +99,11 @@ class RigidShaft(NamedTuple):
         """Return whether the shaft has kinetic energy, and not beyond all bounds."""
         return -1 < y[0] / energy < 1e12
 
-    def rate(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[Number]:
+    def rate(self, torque: Precise, energy: Precise, y: Sequence[Precise]) -> list[Precise]:
         """Return y′."""
         return [torque - self.load.torque(self.speed(energy, y))]
 
-    def slopes(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[list[Number]]:
+    def slopes(self, torque: Precise, energy: Precise, y: Sequence[Precise]) -> list[list[Precise]]:
         """Return the derivatives of y′ by y; dw/dz = 1/(J ω_n² (1 + w))."""
         w = self.speed(energy, y)
         return [[-self.load.slope(w) / (2 * energy * (1 + w))]]
@@ -113,19 +113,19 @@ class ElasticShaft(NamedTuple):
     """y = (ϑ in rad, w₁, w₂); stiffness in N m/rad, damping in N m s/rad, first, second: J₁ ω_n² and J₂ ω_n² in J."""
 
     load: LoadLaw
-    nominal: Number
-    stiffness: Number
-    damping: Number
-    first: Number
-    second: Number
+    nominal: Precise
+    stiffness: Precise
+    damping: Precise
+    first: Precise
+    second: Precise
     unknowns: int = 3
 
-    def start(self, energy: Number) -> list[Number]:
+    def start(self, energy: Precise) -> list[Precise]:
         """Return the twist by the mean torque, without vibration."""
         still = 0 * energy
         return [self.load.mean / self.stiffness + still, still, still]
 
-    def speed(self, energy: Number, y: Sequence[Number]) -> Number:
+    def speed(self, energy: Precise, y: Sequence[Precise]) -> Precise:
         """Return w₁."""
         return y[1]
 
@@ -133,11 +133,11 @@ class ElasticShaft(NamedTuple):
         """Return whether both masses turn forward, and not beyond all bounds."""
         return -1 < y[1] < 1e6 and -1 < y[2] < 1e6
 
-    def torque(self, y: Sequence[Number]) -> Number:
+    def torque(self, y: Sequence[Precise]) -> Precise:
         """Return T in N m."""
         return self.stiffness * y[0] + self.damping * self.nominal * (y[1] - y[2])
 
-    def rate(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[Number]:
+    def rate(self, torque: Precise, energy: Precise, y: Sequence[Precise]) -> list[Precise]:
         """Return y′."""
         passed = self.torque(y)
         return [
@@ -146,7 +146,7 @@ class ElasticShaft(NamedTuple):
             (passed - self.load.torque(y[2])) / self.second,
         ]
 
-    def slopes(self, torque: Number, energy: Number, y: Sequence[Number]) -> list[list[Number]]:
+    def slopes(self, torque: Precise, energy: Precise, y: Sequence[Precise]) -> list[list[Precise]]:
         """Return the derivatives of y′ by y."""
         k, d = self.stiffness, self.damping * self.nominal
         rise = self.load.slope(y[2])
@@ -157,11 +157,11 @@ class ElasticShaft(NamedTuple):
         ]
 
 
-Equation = Union[RigidShaft, ElasticShaft]
+ShaftEquation = Union[RigidShaft, ElasticShaft]
 """y′ = rate(torque, energy, y) of unknowns y."""
 
 
-def in_floats(equation: Equation) -> Equation:
+def equation_in_floats(equation: ShaftEquation) -> ShaftEquation:
     """Return an equation with floats for mpmath's numbers."""
     load = equation.load._replace(mean=float(equation.load.mean))
     nominal = float(equation.nominal)
@@ -208,7 +208,7 @@ class TextbookShaft:
         # the equation
         mean = self._mean(self._torque)
         load = LoadLaw(mean, machine.load.slip, machine.load.power)
-        self.equation: Equation = RigidShaft(load, self.nominal)
+        self.equation: ShaftEquation = RigidShaft(load, self.nominal)
         if machine.coupling is not None:
             coupling, square = machine.coupling, self.nominal**2
             first = self._mean(self._inertia) * square
@@ -216,25 +216,25 @@ class TextbookShaft:
             springs = mpf(coupling.stiffness), mpf(coupling.damping)
             self.equation = ElasticShaft(load, self.nominal, *springs, first, second)
 
-    def _mean(self, function: Callable[[Number, Number], Number]) -> Number:
+    def _mean(self, function: Callable[[Precise, Precise], Precise]) -> Precise:
         """Return the mean of a function over the cycle."""
         areas = integrals(np.frompyfunc(function, 2, 1), self.edges, STEPS)
         return areas.sum() / self.cycle
 
-    def _torque(self, phi: Number, within: Number) -> Number:
+    def _torque(self, phi: Precise, within: Precise) -> Precise:
         """Return M in N m at an angle in degrees."""
         return needed("ΔE", self._book.addends, phi, within)
 
-    def _inertia(self, phi: Number, within: Number) -> Number:
+    def _inertia(self, phi: Precise, within: Precise) -> Precise:
         """Return J(φ) in kg m²."""
         moving = [cylinder.inertia(phi - place) for cylinder, place in self._book.cylinders]
         return sum(moving, self._rigid)
 
-    def energy(self, phi: Number, within: Number) -> Number:
+    def energy(self, phi: Precise, within: Precise) -> Precise:
         """Return ½ J(φ) ω_n² in J."""
         return self._inertia(phi, within) * self.nominal**2 / 2
 
-    def at(self, phi: Number, within: Number) -> tuple[Number, Number]:
+    def at(self, phi: Precise, within: Precise) -> tuple[Precise, Precise]:
         """Return torque and energy at an angle in degrees."""
         return self._torque(phi, within), self.energy(phi, within)
 
@@ -275,8 +275,8 @@ class Mesh(NamedTuple):
     is_long: Array
 
 
-def periodic(
-    equation: Equation, at: Callable[[Array, Array], Array], edges: Array, count: int
+def periodic_solution(
+    equation: ShaftEquation, at: Callable[[Array, Array], Array], edges: Array, count: int
 ) -> Mesh:
     """Return the periodic solution by collocation at so many nodes, in floats or, by the edges, in mpmath's numbers.
 
@@ -322,7 +322,7 @@ def periodic(
 
 
 def _newton_step(
-    missing: Array, slopes: list[list[Number]], lengths: Array, matrix: Array
+    missing: Array, slopes: list[list[Precise]], lengths: Array, matrix: Array
 ) -> Array:
     """Return the corrections (unknowns, elements, s) that a linear equation needs, periodic over all elements."""
     unknowns, elements, count = missing.shape
@@ -375,16 +375,16 @@ def speed_of(shaft: TextbookShaft, most: int) -> SpeedOfShaft:
 
     Raises ArithmeticError where there is none, or more than so many elements would be needed.
     """
-    rough, edges = in_floats(shaft.equation), shaft.edges
+    rough, edges = equation_in_floats(shaft.equation), shaft.edges
     while True:
-        mesh = periodic(rough, shaft.fits.at, edges.astype(float), 14)
+        mesh = periodic_solution(rough, shaft.fits.at, edges.astype(float), 14)
         if not mesh.is_long.any():
             break
         middles = (edges[1:] + edges[:-1]) / 2
         edges = np.sort(np.append(edges, middles[mesh.is_long]))
         if len(edges) > most:
             raise ArithmeticError(f"the reference needs more than {most} elements")
-    exact = periodic(shaft.equation, np.frompyfunc(shaft.at, 2, 2), edges, 20)
+    exact = periodic_solution(shaft.equation, np.frompyfunc(shaft.at, 2, 2), edges, 20)
     return _compared(shaft, exact)
 
 
@@ -402,13 +402,13 @@ def _compared(shaft: TextbookShaft, mesh: Mesh) -> SpeedOfShaft:
     if isinstance(equation, ElasticShaft):
         mean = 1 + widths @ (w @ weights)
 
-    def speed(y: Sequence[Number], phi: Number, within: Number) -> Number:
+    def speed(y: Sequence[Precise], phi: Precise, within: Precise) -> Precise:
         return equation.speed(shaft.energy(phi, within), y)
 
     highest = _largest(mesh, w, speed)
     lowest = -_largest(mesh, -w, lambda *at: -speed(*at))
     delta = (highest - lowest) / mean
-    M_K: tuple[Number, ...] = ()
+    M_K: tuple[Precise, ...] = ()
     if isinstance(equation, ElasticShaft):
         torque, samples = equation.torque, np.asarray(equation.torque(list(mesh.y[:, :, 1:])))
         greatest = _largest(mesh, samples, lambda y, *_: torque(y))
@@ -418,8 +418,8 @@ def _compared(shaft: TextbookShaft, mesh: Mesh) -> SpeedOfShaft:
 
 
 def _largest(
-    mesh: Mesh, samples: Array, function: Callable[[Sequence[Number], Number, Number], Number]
-) -> Number:
+    mesh: Mesh, samples: Array, function: Callable[[Sequence[Precise], Precise, Precise], Precise]
+) -> Precise:
     """Return the largest value of a function of y, φ and an angle within, near its largest sample (elements, s)."""
     count = len(samples)
     top = int(samples.max(axis=1).argmax())
@@ -428,8 +428,8 @@ def _largest(
 
 
 def _largest_on(
-    mesh: Mesh, number: int, function: Callable[[Sequence[Number], Number, Number], Number]
-) -> Number:
+    mesh: Mesh, number: int, function: Callable[[Sequence[Precise], Precise, Precise], Precise]
+) -> Precise:
     """Return the largest value on one element, on which y is interpolated through its beginning and its nodes."""
     inner, _ = collocation(mesh.y.shape[2] - 1)
     nodes = np.append(mpf(0), inner)
@@ -439,7 +439,7 @@ def _largest_on(
     weights = 1 / differences.prod(axis=1)
     low, high = mesh.edges[number], mesh.edges[number + 1]
 
-    def at(phi: Number, within: Number) -> Number:
+    def at(phi: Precise, within: Precise) -> Precise:
         distances = (phi - low) / (high - low) - nodes
         at_node = np.flatnonzero(distances == 0)
         if len(at_node):

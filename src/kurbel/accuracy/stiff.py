@@ -12,13 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.accuracy.marching import Marched, Problem, rivals
-from kurbel.accuracy.methods import Number, mp, mpf
+from kurbel.accuracy.methods import Precise, mp, mpf
 from kurbel.accuracy.shaft import (
     EVERY,
     MOST,
     SpeedOfShaft,
     TextbookShaft,
-    in_floats,
+    equation_in_floats,
     speed_of,
     without_reference,
 )
@@ -114,7 +114,7 @@ def _rows(
         speed, _, evaluations = watched(run)
         add(name, "adaptive", Marched("periodic", speed, evaluations), timed(run, quick))
 
-    fits, equation = shaft.fits, in_floats(shaft.equation)
+    fits, equation = shaft.fits, equation_in_floats(shaft.equation)
     for name, points, march in rivals(partial(Problem, equation, fits, shaft.cycle)):
         begin = time.perf_counter()
         marched = march()
@@ -140,6 +140,6 @@ def _errors(speed: SpeedOfShaft | None, truth: SpeedOfShaft) -> Errors:
     return omega, _error(speed.delta, truth.delta), _error(speed.omega_max, truth.omega_max), M_K
 
 
-def _error(value: float, truth: Number) -> float:
+def _error(value: float, truth: Precise) -> float:
     """Return a relative error."""
     return float(abs(mpf(float(value)) / truth - 1))

@@ -22,11 +22,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.accuracy.cards import KNOWN_CARDS, Drawing, Fractions, Line, drawn
+from kurbel.accuracy.cards import KNOWN_CARDS, CardProcess, Fractions, StrokeLine, drawn
 from kurbel.accuracy.efforts import diagram_of, knees_of
 from kurbel.accuracy.jets import Jet
-from kurbel.accuracy.linkages import Motion, RodMotion, Stance, motion_of
-from kurbel.accuracy.methods import Found, Number, by_gauss, integrals, merged, mp, mpf, roots
+from kurbel.accuracy.linkages import RodMotion, Stance, TextbookMotion, motion_of
+from kurbel.accuracy.methods import (
+    Found,
+    Precise,
+    by_gauss,
+    integrals,
+    merged,
+    mp,
+    mpf,
+    roots_inside,
+)
 from kurbel.accuracy.valves import events_of
 from kurbel.arrays import Array
 from kurbel.machine import CYCLES, Cylinder, Machine
@@ -73,34 +82,34 @@ def unknown(machine: Machine, quantity: str) -> Iterator[str]:
 # chambers
 
 
-class Chamber(NamedTuple):
+class TextbookChamber(NamedTuple):
     """One end of a piston: its card, whether it grows on the outstroke (sign 1) or the return (−1), its area in m²."""
 
-    card: Drawing
+    card: CardProcess
     sign: int
-    area: Number
+    area: Precise
     strokes: int
 
-    def lines(self, stroke: int) -> list[Line]:
+    def lines(self, stroke: int) -> list[StrokeLine]:
         """Return the card's lines on a stroke of the cycle."""
         number = (stroke - (self.sign < 0)) % self.strokes
         return [line for line in self.card.lines if line.stroke == number]
 
-    def fraction(self, share: Number) -> Number:
+    def fraction(self, share: Precise) -> Precise:
         """Return z of the card at a share of the crosshead's stroke, or that share at z."""
         return share if self.sign > 0 else 1 - share
 
-    def line_at(self, stroke: int, share: Number) -> Line:
+    def line_at(self, stroke: int, share: Precise) -> StrokeLine:
         """Return the line on which the gas is at a share of the crosshead's stroke."""
         z = self.fraction(share)
         return next(line for line in self.lines(stroke) if (line.begin - z) * (line.end - z) < 0)
 
-    def pressure(self, line: Line, share: Number) -> Number:
+    def pressure(self, line: StrokeLine, share: Precise) -> Precise:
         """Return the absolute pressure at a share of the crosshead's stroke, on one of the lines."""
         return self.card.at(line, self.fraction(share))
 
     @property
-    def work(self) -> Number:
+    def work(self) -> Precise:
         """The work in J over the stroke in m, of one process: A ∮ p dz."""
         areas = mpf(0)
         for line in self.card.lines:
@@ -114,9 +123,9 @@ class Chamber(NamedTuple):
 class PistonProcess(NamedTuple):
     """The chambers of a piston; is_own: whether it is the cylinder's own one; drives: by the work of its gas."""
 
-    chambers: tuple[Chamber, ...]
+    chambers: tuple[TextbookChamber, ...]
     is_own: bool
-    work: Number
+    work: Precise
 
 
 # the forces
@@ -129,54 +138,54 @@ class RodBody(NamedTuple):
     whose weight the books leave out: pin_mass.
     """
 
-    mass: Number
-    place: Number
-    inertia: Number
-    pin_mass: Number
+    mass: Precise
+    place: Precise
+    inertia: Precise
+    pin_mass: Precise
 
 
-class Gas(NamedTuple):
+class GasForces(NamedTuple):
     """Force of the gas in N, that on the driving pistons, and the pressure difference in Pa across the own piston."""
 
-    force: Number
-    driving: Number
-    difference: Number
+    force: Precise
+    driving: Precise
+    difference: Precise
 
 
-class Loads(NamedTuple):
+class PinLoads(NamedTuple):
     """Friction in N along the stroke line; forces (x, y) in N on the crosshead pin and the crank pin.
 
     kinks: what changes its sign where the friction turns round.
     """
 
-    drag: Number
-    H: tuple[Number, Number]
-    Z: tuple[Number, Number]
-    kinks: tuple[Number, ...]
+    drag: Precise
+    H: tuple[Precise, Precise]
+    Z: tuple[Precise, Precise]
+    kinks: tuple[Precise, ...]
 
 
 class Forces(NamedTuple):
     """dx/dφ in m; in N the gas force, that on driving pistons, friction along x and T; M in N m.
 
     losses: in N m, in pins, journals and the block of a yoke. The names are those of the columns of the solver; inertia
-    is that at uniform speed. kinks: as of `Loads`.
+    is that at uniform speed. kinks: as of `PinLoads`.
     """
 
-    slope: Number
-    P_gas: Number
-    P_driving: Number
-    F_friction: Number
-    losses: dict[str, Number]
-    T: Number
-    M: Number
-    kinks: tuple[Number, ...]
+    slope: Precise
+    P_gas: Precise
+    P_driving: Precise
+    F_friction: Precise
+    losses: dict[str, Precise]
+    T: Precise
+    M: Precise
+    kinks: tuple[Precise, ...]
 
 
 class TextbookCylinder:
     """Forces of one cylinder; edges: of the pieces of its cycle between the corners of cards and of friction."""
 
     def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
-        self.motion: Motion = motion_of(cylinder.mechanism)
+        self.motion: TextbookMotion = motion_of(cylinder.mechanism)
         self.turns = CYCLES[machine.cycle_of(cylinder)]
         self.omega, self._ambient = 2 * mp.pi * mpf(machine.speed or 0.0), mpf(machine.ambient)
         self._cylinder, self._mechanism = cylinder, cylinder.mechanism
@@ -272,17 +281,17 @@ class TextbookCylinder:
                 events = Fractions(*(place if is_head else 1 - place for place in places))
             drawing = drawn(card, lift, turns == 2, self._ambient, events)
             strokes = 1 + max(line.stroke for line in drawing.lines)
-            chambers.append(Chamber(drawing, sign, area, strokes))
+            chambers.append(TextbookChamber(drawing, sign, area, strokes))
         work = sum((chamber.work for chamber in chambers), mpf(0))
         return PistonProcess(tuple(chambers), number == 0, work)
 
     # pieces of the cycle
 
-    def _share(self, phi: Number) -> Number:
+    def _share(self, phi: Precise) -> Precise:
         """Return the share of the stroke that the output is past its inner dead centre."""
         return (self.motion.at(phi).x - self.motion.start) / self.motion.stroke
 
-    def _corners(self) -> Iterator[Number]:
+    def _corners(self) -> Iterator[Precise]:
         """Yield the angles from the first inner dead centre through one cycle at which a card bends or jumps."""
         yield self.motion.ends[0] + 360 * self.turns
         for stroke in range(2 * self.turns):
@@ -294,12 +303,12 @@ class TextbookCylinder:
                 yield square + 360 * turn
             for share in self._shares(stroke):
                 beyond = np.frompyfunc(lambda phi, _, at=share: self._share(phi) - at, 2, 1)
-                (angle,), _ = roots(beyond, np.array([begin]), np.array([end]), STEPS)
+                (angle,), _ = roots_inside(beyond, np.array([begin]), np.array([end]), STEPS)
                 yield angle + 360 * turn
 
-    def _shares(self, stroke: int) -> set[Number]:
+    def _shares(self, stroke: int) -> set[Precise]:
         """Return the shares of the stroke inside it at which a card bends or jumps."""
-        shares: set[Number] = set()
+        shares: set[Precise] = set()
         for piston in self.pistons:
             for chamber in piston.chambers:
                 shares |= {chamber.fraction(line.begin) for line in chamber.lines(stroke)}
@@ -313,11 +322,11 @@ class TextbookCylinder:
             kink = np.frompyfunc(
                 lambda phi, within, number=number: self.at(phi, within).kinks[number], 2, 1
             )
-            turned, _ = roots(kink, self.edges[:-1], self.edges[1:], STEPS)
+            turned, _ = roots_inside(kink, self.edges[:-1], self.edges[1:], STEPS)
             edges.append(turned)
         return merged(np.concatenate(edges))
 
-    def _piece_of(self, within: Number) -> tuple[int, list[list[Line]]]:
+    def _piece_of(self, within: Precise) -> tuple[int, list[list[StrokeLine]]]:
         """Return the sense of the stroke on a piece, and on which line of its card each chamber is."""
         inner, outer, _ = self.motion.ends
         since = (within - inner) % (360 * self.turns)
@@ -333,7 +342,7 @@ class TextbookCylinder:
 
     # forces
 
-    def at(self, phi: Number, within: Number) -> Forces:
+    def at(self, phi: Precise, within: Precise) -> Forces:
         """Return the forces at a crank angle, computed once for all quantities and equal cylinders."""
         cycle = 360 * self.turns
         angle, inside = phi % cycle, within % cycle
@@ -343,7 +352,7 @@ class TextbookCylinder:
             state = self._states[key] = self._forces(angle, inside)
         return state
 
-    def _forces(self, phi: Number, within: Number) -> Forces:
+    def _forces(self, phi: Precise, within: Precise) -> Forces:
         """Return the forces at a crank angle, computed anew."""
         pose, (sense, lines) = self.motion.at(phi), self._piece(within)
         gas = self._gas(pose, lines)
@@ -373,11 +382,11 @@ class TextbookCylinder:
         kinks = (*loads.kinks, gas.difference)
         return Forces(pose.slope, gas.force, gas.driving, friction, losses, T, M, kinks)
 
-    def _gas(self, pose: Stance, lines: list[list[Line]]) -> Gas:
+    def _gas(self, pose: Stance, lines: list[list[StrokeLine]]) -> GasForces:
         """Return the forces of the gas on all pistons."""
         force = driving = difference = mpf(0)
         if not self.pistons:
-            return Gas(force, driving, difference)
+            return GasForces(force, driving, difference)
         share = (pose.x - self.motion.start) / self.motion.stroke
         for piston, its_lines in zip(self.pistons, lines):
             on_piston = mpf(0)
@@ -389,11 +398,11 @@ class TextbookCylinder:
             force += on_piston
             if piston.work > IDLE:
                 driving += on_piston
-        return Gas(force, driving, difference)
+        return GasForces(force, driving, difference)
 
     def _on_rod(
-        self, phi: Number, pose: Stance, sense: int, push: Number, side: Number
-    ) -> tuple[Loads, dict[str, Number], Number]:
+        self, phi: Precise, pose: Stance, sense: int, push: Precise, side: Precise
+    ) -> tuple[PinLoads, dict[str, Precise], Precise]:
         """Return the loads on the pins of a rod, the losses there, and what the shaft loses; side: sign of cos φ."""
         swing = self._swing(phi, pose)
         loads = self._loads(pose, swing, sense, push, mpf(0))
@@ -419,14 +428,16 @@ class TextbookCylinder:
         kinks = (*loads.kinks, *rubbed.kinks)
         return rubbed._replace(kinks=kinks), losses, crank + journals
 
-    def _swing(self, phi: Number, pose: Stance) -> Jet:
+    def _swing(self, phi: Precise, pose: Stance) -> Jet:
         """Return the angle of the rod with its derivatives, from L sin ψ = R sin φ − e."""
         ratio = self.motion.r / mpf(self._mechanism.rod_length)
         rate = ratio * mp.cospi(phi / 180) / pose.cos_psi
         bend = (pose.sin_psi * rate**2 - ratio * mp.sinpi(phi / 180)) / pose.cos_psi
         return Jet(mp.asin(pose.sin_psi), rate, bend)
 
-    def _loads(self, pose: Stance, swing: Jet, sense: int, push: Number, couple: Number) -> Loads:
+    def _loads(
+        self, pose: Stance, swing: Jet, sense: int, push: Precise, couple: Precise
+    ) -> PinLoads:
         """Return N and the forces on the pins of a rod; couple: by friction in the pins, in the sense of rotation."""
         sin, cos = pose.sin_psi, pose.cos_psi
         length, rod, omega = mpf(self._mechanism.rod_length), self._rod, self.omega
@@ -445,11 +456,11 @@ class TextbookCylinder:
         N = lift / (cos + sense * mp.sign(lift) * self._crosshead * sin)
         drag = self._crosshead * abs(N)
         H = push - sense * drag, N - weight
-        return Loads(drag, H, (H[0] + x, H[1] + y), (lift,))
+        return PinLoads(drag, H, (H[0] + x, H[1] + y), (lift,))
 
     def _on_yoke(
-        self, phi: Number, sense: int, push: Number, side: Number
-    ) -> tuple[Loads, dict[str, Number], Number]:
+        self, phi: Precise, sense: int, push: Precise, side: Precise
+    ) -> tuple[PinLoads, dict[str, Precise], Precise]:
         """Return the loads of a yoke on the crank pin, the losses of its block and of the pin, and the shaft's."""
         rise = self.motion.r * mp.sinpi(phi / 180)
         drag = 2 * self._guides * abs(push * rise)
@@ -460,9 +471,9 @@ class TextbookCylinder:
         crank, journals = self._at_crank * on_pin, self._at_journals * on_pin
         slides = self.motion.r * abs(mp.cospi(phi / 180))
         losses = {"block": block * slides, "crank_pin": crank, "journals": journals}
-        return Loads(drag, (along, mpf(0)), Z, (push, along)), losses, crank + journals
+        return PinLoads(drag, (along, mpf(0)), Z, (push, along)), losses, crank + journals
 
-    def inertia(self, phi: Number) -> Number:
+    def inertia(self, phi: Precise) -> Precise:
         """Return the inertia in kg m² that has the kinetic energy of all moving masses."""
         pose, masses = self.motion.at(phi), self._cylinder.masses
         inertia = self._parts * pose.slope**2
@@ -485,7 +496,7 @@ class TextbookCylinder:
         return any(piston.work > IDLE for piston in self.pistons)
 
 
-def _radius(coefficient: float | None, diameter: float | None) -> Number:
+def _radius(coefficient: float | None, diameter: float | None) -> Precise:
     """Return the radius of a circle of friction in m, f d/2; 0 where nothing rubs."""
     return mpf(coefficient or 0.0) * mpf(diameter or 0.0) / 2
 
@@ -493,7 +504,7 @@ def _radius(coefficient: float | None, diameter: float | None) -> Number:
 # quantities
 
 
-NEEDED: dict[str, Callable[[Number], Number]] = {
+NEEDED: dict[str, Callable[[Precise], Precise]] = {
     "A_i": lambda state: state.slope * state.P_gas,
     "T_max, T_min": lambda state: state.T,
     "A_f": lambda state: sum(state.losses.values()) - state.slope * state.F_friction,
@@ -515,11 +526,11 @@ class Addends(NamedTuple):
     A cylinder is a function that returns its columns at angles of its own crank.
     """
 
-    cylinders: Sequence[tuple[Callable[[Number, Number], Number], Number, Share]]
-    diagrams: Sequence[tuple[Callable[[Number, Number], Number], float]] = ()
+    cylinders: Sequence[tuple[Callable[[Precise, Precise], Precise], Precise, Share]]
+    diagrams: Sequence[tuple[Callable[[Precise, Precise], Precise], float]] = ()
 
 
-def needed(quantity: str, addends: Addends, phi: Number, within: Number) -> Number:
+def needed(quantity: str, addends: Addends, phi: Precise, within: Precise) -> Precise:
     """Return what a quantity is computed from, at angles of crank 1."""
     total = 0 * phi
     for at, place, share in addends.cylinders:
@@ -574,7 +585,7 @@ class TextbookMachine:
             for turn in range(0, turns, cylinder.turns):
                 edges += [(edge + place + 360 * turn) % self.cycle for edge in cylinder.edges]
 
-        self.diagrams: list[tuple[Callable[[Number, Number], Number], float]] = []
+        self.diagrams: list[tuple[Callable[[Precise, Precise], Precise], float]] = []
         shares = [Share()] * len(members)
         if quantity == "ΔE":
             self._add_diagrams(machine)
@@ -592,11 +603,11 @@ class TextbookMachine:
         ]
         return Addends(cylinders, self.diagrams)
 
-    def _knees(self, machine: Machine) -> list[Number]:
+    def _knees(self, machine: Machine) -> list[Precise]:
         """Return where given efforts and loads bend."""
         load = machine.load.diagram if machine.load else None
         diagrams = [diagram for diagram in (machine.effort, load) if diagram is not None]
-        knees: list[Number] = []
+        knees: list[Precise] = []
         for diagram in diagrams:
             assert not isinstance(diagram, Swing)
             knees += knees_of(diagram, self.cycle)
@@ -614,7 +625,7 @@ class TextbookMachine:
         if machine.load is not None and machine.load.diagram is not None:
             self.diagrams.append((diagram_of(machine.load.diagram), -1.0))
 
-    def _shares(self, eta: Number) -> list[Share]:
+    def _shares(self, eta: Precise) -> list[Share]:
         """Return the shares of the cylinders: of a machine that drives, driven pistons count in full."""
         cylinders = [cylinder for cylinder, _ in self.cylinders]
         if not any(cylinder.drives for cylinder in cylinders):

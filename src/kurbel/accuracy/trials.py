@@ -15,7 +15,7 @@ import numpy as np
 from kurbel.accuracy.linkages import Stance, motion_of, stance
 from kurbel.accuracy.methods import (
     Found,
-    Number,
+    Precise,
     by_fit,
     by_gauss,
     by_quad,
@@ -200,12 +200,14 @@ def rival(
         floats = Share(float(share.whole), float(share.of_driving))
         forces = CylinderForces(machine, cylinder)
         cylinders.append((forces.at, forces.drive.lag, floats))
-    diagrams = [(in_floats(torque), factor) for torque, factor in book.diagrams]
+    diagrams = [(torque_in_floats(torque), factor) for torque, factor in book.diagrams]
     function = partial(needed, quantity, Addends(cylinders, diagrams))
     return method(quantity, function, book.edges.astype(float), count)
 
 
-def in_floats(torque: Callable[[Number, Number], Number]) -> Callable[[Array, Array], Array]:
+def torque_in_floats(
+    torque: Callable[[Precise, Precise], Precise],
+) -> Callable[[Array, Array], Array]:
     """Return a torque over the angle that takes floats (n,)."""
     at = np.frompyfunc(torque, 2, 1)
     return lambda phi, within: np.asarray(at(phi, within), dtype=float)

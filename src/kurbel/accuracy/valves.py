@@ -8,44 +8,46 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.accuracy.methods import Number, mp, mpf, roots
+from kurbel.accuracy.methods import Precise, mp, mpf, roots_inside
 from kurbel.machine.valve import EachEnd, Length, Valve
 
 _STEPS = 48
 """Equal steps of a stroke, at which events are looked for."""
 
 
-class Events(NamedTuple):
+class ValveEvents(NamedTuple):
     """Crank angles in degrees from the inner dead centre through one turn, at one end of the cylinder."""
 
-    cut_off: Number
-    release: Number
-    compression: Number
-    admission: Number
+    cut_off: Precise
+    release: Precise
+    compression: Precise
+    admission: Precise
 
 
-def events_of(valve: Valve, end: str) -> Events:
+def events_of(valve: Valve, end: str) -> ValveEvents:
     """Return the events at `head_end` or `crank_end`, in a turn from the dead centre of this end."""
     ahead, square, slope, shift = _drive(valve)
     number = ("head_end", "crank_end").index(end)
     opens = 1 - 2 * number
     laps = [mpf(_at_ends(length)[number]) for length in (valve.steam_lap, valve.exhaust_lap)]
 
-    def displacement(phi: Number) -> Number:
+    def displacement(phi: Precise) -> Precise:
         sin, cos = mp.sinpi(phi / 180), mp.cospi(phi / 180)
         across = square * cos - ahead * sin
         return ahead * cos + square * sin + valve.sense * _nearer(across, slope) + shift
 
     begin, late = 180 * number, 180 * number + 180
 
-    def passed(lap: Number, sense: int, beyond: int, otherwise: int) -> Number:
+    def passed(lap: Precise, sense: int, beyond: int, otherwise: int) -> Precise:
         """Return where an edge passes that of the port on the stroke that begins at an angle."""
         uncovered = np.frompyfunc(lambda phi, _: sense * displacement(phi) - lap, 2, 1)
-        found, _ = roots(uncovered, np.array([mpf(beyond)]), np.array([mpf(beyond + 180)]), _STEPS)
+        found, _ = roots_inside(
+            uncovered, np.array([mpf(beyond)]), np.array([mpf(beyond + 180)]), _STEPS
+        )
         return found[0] if len(found) else mpf(otherwise)
 
     steam, exhaust = laps
-    return Events(
+    return ValveEvents(
         cut_off=passed(steam, opens, begin, begin),
         release=passed(exhaust, -opens, begin, late),
         compression=passed(exhaust, -opens, late, late + 180),
@@ -60,14 +62,14 @@ def _at_ends(length: Length) -> tuple[float, float]:
     return length, length
 
 
-def _nearer(across: Number, slope: Number) -> Number:
+def _nearer(across: Precise, slope: Precise) -> Precise:
     """Return l − √(l² − r² cos² a) of the eccentric rod; slope: 1/l."""
     if slope == 0:
         return mpf(0)
     return (1 - mp.sqrt(1 - (slope * across) ** 2)) / slope
 
 
-def _drive(valve: Valve) -> tuple[Number, Number, Number, Number]:
+def _drive(valve: Valve) -> tuple[Precise, Precise, Precise, Precise]:
     """Return r sin δ, r cos δ, 1/l and ε of the one eccentric that moves the valve."""
     r, rod = mpf(valve.travel) / 2, mpf(valve.eccentric_rod)
 

@@ -11,6 +11,7 @@ from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Machine
 from kurbel.machine.cylinder import pin_lag
 from kurbel.machine.firing import firings
+from kurbel.machine.indicator import Chamber
 from kurbel.machine.several import intervals, rounded_within_cycle
 from kurbel.notes.left_out import (
     balance_left_out,
@@ -48,114 +49,138 @@ class Checked(NamedTuple):
     @property
     def shown_once(self) -> list[Topic]:
         """The sections, with one for identical cylinders."""
+        # a cylinder is identical to another whatever its title
         groups = grouped(
             self.sections,
-            lambda one: (one.cylinder or one.title, tuple(entry[:3] for entry in one.entries)),
+            lambda topic: (
+                topic.cylinder or topic.title,
+                tuple(entry[:3] for entry in topic.entries),
+            ),
         )
-        return [group[0]._replace(title=together([one.title for one in group])) for group in groups]
+        merged = []
+        for group in groups:
+            title = together([topic.title for topic in group])
+            merged.append(group[0]._replace(title=title))
+        return merged
 
 
 def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     """Return the check of a machine, and of its limits in its load cases; only what this needs is computed."""
-    machine, notes, every = case.machine, machine_notes(case), compared_entries(case, cases)
-    figures = [one for one in every if not one.error]
-    of_whole = (CheckEntry("note", note.text, "warning") for note in notes if note.cylinder is None)
-    topics: dict[str, Iterable[CheckEntry]] = {
-        "Cranks": _crank_entries(machine),
-        "Whole machine": (*_turning_entries(machine), *of_whole),
-        "Crankshaft": _crankshaft_entries(case),
-        "Oil film": _oil_film_entries(case),
-        "Balance": _balance_entries(case),
-        "Shaft line": _shaft_entries(case),
-        "Delivery": _delivery_entries(case),
-        "Limits": [figure for figure in figures if figure.path[0] == "limits"],
-        "Expected": [figure for figure in figures if figure.path[0] == "expect"],
-    }
-    found = (
-        Topic("Machine", tuple(_machine_entries(machine))),
-        *(
-            Topic(one.name, tuple(_cylinder_entries(machine, number, notes)), cylinder=True)
-            for number, one in enumerate(machine.cylinders)
-        ),
-        *(Topic(title, tuple(entries)) for title, entries in topics.items()),
-    )
-    sections = tuple(one for one in found if one.entries)
-    broken = any(figure.severity == "error" for figure in figures)
-    return Checked(
-        f"{machine.name}: a valid machine",
-        sections,
-        broken,
-        tuple(one for one in every if one.error),
-    )
+    machine = case.machine
+    notes = machine_notes(case)
+    # limits and expectations
+    figures = compared_entries(case, cases)
+    judged = [figure for figure in figures if figure.error is None]
+    unjudged = [figure for figure in figures if figure.error is not None]
+    # the sections: of each cylinder, and of the machine
+    topics = [Topic("Machine", tuple(_machine_entries(machine)))]
+    for number, cylinder in enumerate(machine.cylinders):
+        entries = tuple(_cylinder_entries(machine, number, notes))
+        topics.append(Topic(cylinder.name, entries, cylinder=True))
+    notes_of_machine = [note.text for note in notes if note.cylinder is None]
+    warnings = [CheckEntry("note", text, "warning") for text in notes_of_machine]
+    topics += [
+        Topic("Cranks", tuple(_crank_entries(machine))),
+        Topic("Whole machine", (*_turning_entries(machine), *warnings)),
+        Topic("Crankshaft", tuple(_crankshaft_entries(case))),
+        Topic("Oil film", tuple(_oil_film_entries(case))),
+        Topic("Balance", tuple(_balance_entries(case))),
+        Topic("Shaft line", tuple(_shaft_entries(case))),
+        Topic("Delivery", tuple(_delivery_entries(case))),
+        Topic("Limits", tuple(figure for figure in judged if figure.path[0] == "limits")),
+        Topic("Expected", tuple(figure for figure in judged if figure.path[0] == "expect")),
+    ]
+    sections = tuple(topic for topic in topics if topic.entries)
+    is_broken = any(figure.severity == "error" for figure in judged)
+    return Checked(f"{machine.name}: a valid machine", sections, is_broken, tuple(unjudged))
 
 
 def _machine_entries(machine: Machine) -> Iterator[CheckEntry]:
-    none = "none, a given turning effort" if machine.effort else "none, a shaft line alone"
-    yield CheckEntry("cylinders", str(len(machine.cylinders)) if machine.cylinders else none)
+    """Yield what kind of machine it is: cylinders, cycle, speed, and when its cylinders fire."""
+    cylinders = str(len(machine.cylinders))
+    if not machine.cylinders:
+        cylinders = "none, a shaft line alone"
+        if machine.effort:
+            cylinders = "none, a given turning effort"
+    yield CheckEntry("cylinders", cylinders)
     yield CheckEntry("cycle", f"{machine.cycle}, {360 * machine.revolutions} deg")
-    yield CheckEntry(
-        "speed", "not given" if machine.speed is None else show(machine.speed, "speed")
-    )
-    if found := firings(machine):
-        path: Path = ("cylinders",) if len(machine.cylinders) > 1 else ()
-        angles = [angle for angle, _ in found]
-        between = intervals(angles, 360.0 * machine.revolutions)
-        least, most = min(between), max(between)
-        uneven = most - least > _EVEN
-        listed = ", ".join(f"{angle:g}" for angle in (between if uneven else [most]))
-        at = ", ".join(f"{angle:g}" for angle in angles) + " deg"
-        if len(found) == 1 and angles[0]:
-            # with an offset, the inner dead centre is a little before or after φ = 0
-            at = f"{math.remainder(angles[0], most):g} deg, the inner dead centre"
-        order = f"order {'-'.join(str(number) for _, number in found)}, " if path else ""
-        text = f"{order}at {at}, intervals {listed} deg"
-        yield CheckEntry("firing", text, "info", path)
-        if uneven:
-            yield CheckEntry(
-                "note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "info", path
-            )
+    speed = "not given" if machine.speed is None else show(machine.speed, "speed")
+    yield CheckEntry("speed", speed)
+    fired = firings(machine)
+    if fired:
+        yield from _firing_entries(machine, fired)
+
+
+def _firing_entries(machine: Machine, fired: Sequence[tuple[float, int]]) -> Iterator[CheckEntry]:
+    """Yield order, angles and intervals of the firings; fired: (angle, number of the cylinder), in order."""
+    path: Path = ("cylinders",) if len(machine.cylinders) > 1 else ()
+    angles = [angle for angle, _ in fired]
+    differences = intervals(angles, 360.0 * machine.revolutions)
+    least = min(differences)
+    most = max(differences)
+    is_uneven = most - least > _EVEN
+    # where they fire; with an offset, the inner dead centre is a little before or after φ = 0
+    position = f"{_listed(angles)} deg"
+    if len(fired) == 1 and angles[0]:
+        position = f"{math.remainder(angles[0], most):g} deg, the inner dead centre"
+    order = ""
+    if path:
+        numbers = "-".join(str(number) for _, number in fired)
+        order = f"order {numbers}, "
+    listed_intervals = _listed(differences if is_uneven else [most])
+    text = f"{order}at {position}, intervals {listed_intervals} deg"
+    yield CheckEntry("firing", text, "info", path)
+    if is_uneven:
+        text = f"the firing intervals are uneven: {least:g} to {most:g} deg"
+        yield CheckEntry("note", text, "info", path)
+
+
+def _listed(angles: Iterable[float]) -> str:
+    """Return angles separated by commas."""
+    return ", ".join(f"{angle:g}" for angle in angles)
 
 
 def _cylinder_entries(machine: Machine, number: int, notes: Sequence[Note]) -> Iterator[CheckEntry]:
+    """Yield the dimensions of a cylinder, what is computed of it, what is left out, and its notes."""
     cylinder = machine.cylinders[number]
-    mechanism, path = (
-        cylinder.mechanism,
-        ("cylinders", number) if len(machine.cylinders) > 1 else (),
-    )
-    given = {
-        "stroke": mechanism.stroke,
-        **vars(mechanism),
-    }  # the stroke may be given instead of the crank
-    lengths = [
-        f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
-        for name, key in mechanism.KEYS.items()
-        if key.form.kind != "ratio" and isinstance(size := given.get(name), float) and size
-    ]
+    mechanism = cylinder.mechanism
+    path: Path = ("cylinders", number) if len(machine.cylinders) > 1 else ()
+    # dimensions; the stroke may be given instead of the crank
+    sizes = {"stroke": mechanism.stroke, **vars(mechanism)}
+    lengths = []
+    for name, key in mechanism.KEYS.items():
+        size = sizes.get(name)
+        is_length = isinstance(size, float) and key.form.kind != "ratio"
+        if is_length and size:
+            text = "infinite" if math.isinf(size) else show(size, key.form.kind)
+            lengths.append(f"{name} {text}")
     yield CheckEntry("mechanism", f"{mechanism.name}: {', '.join(lengths)}")
     for piston in cylinder.pistons:
         yield CheckEntry(piston.name, f"bore {show(piston.bore, 'length')}")
+    # chapters and notes
     yield from _stages(stages(machine, cylinder), path)
-    yield from (
-        CheckEntry("note", note.text, "warning", path)
-        for note in notes
-        if note.cylinder == cylinder.name
-    )
-    yield from (CheckEntry("note", text, "info", path) for text in mechanism.notes)
+    for note in notes:
+        if note.cylinder == cylinder.name:
+            yield CheckEntry("note", note.text, "warning", path)
+    for text in mechanism.notes:
+        yield CheckEntry("note", text, "info", path)
 
 
 def _stages(stages: dict[str, str], path: Path = ()) -> Iterator[CheckEntry]:
     """Yield what is computed, and what is left out and why."""
-    yield from _computed(
-        ", ".join(what for what, why in stages.items() if not why), missing(stages), path
-    )
+    computed = [name for name, reason in stages.items() if not reason]
+    yield from _computed(", ".join(computed), missing(stages), path)
 
 
 def _computed(what: str, left_out: Iterable[LeftOut], path: Path = ()) -> Iterator[CheckEntry]:
+    """Yield what is computed, and each thing that is left out with its reason."""
     yield CheckEntry("computed", what)
-    yield from (_left_out(f"{what}: {why}", path) for what, why in left_out)
+    for name, reason in left_out:
+        yield _left_out(f"{name}: {reason}", path)
 
 
 def _left_out(text: str, path: Path = ()) -> CheckEntry:
+    """Return the entry of what is left out."""
     return CheckEntry("left out", text, "info", path)
 
 
@@ -170,47 +195,50 @@ def _crank_entries(machine: Machine) -> Iterator[CheckEntry]:
         if is_banked:
             text += f"stroke line at {cylinder.bank_angle:g} deg: "
         pin_difference = pin_lag(cylinder, first) - pin_lag(first, first)
-        behind = rounded_within_cycle(pin_difference, 360.0)
-        text += f"crank pin {behind:g} deg behind the first"
+        lag = rounded_within_cycle(pin_difference, 360.0)
+        text += f"crank pin {lag:g} deg behind the first"
         yield CheckEntry(cylinder.name, text)
 
 
 def _turning_entries(machine: Machine) -> Iterator[CheckEntry]:
     """Yield what `kurbel flywheel` computes of a machine, unless it is a single cylinder with nothing on the shaft."""
-    given, load = (machine.flywheel, machine.load, machine.effort, machine.coupling), machine.load
-    alone = len(machine.cylinders) == 1 and machine.efficiency == 1 and not any(given)
-    if alone or not (machine.cylinders or machine.effort):
+    load = machine.load
+    on_shaft = (machine.flywheel, load, machine.effort, machine.coupling)
+    is_bare = machine.efficiency == 1 and not any(on_shaft)
+    if is_bare and len(machine.cylinders) == 1:
+        return
+    if not (machine.cylinders or machine.effort):
         return
     yield from _stages(turning_stages(machine))
     if load is None:
         text = "constant"
     elif load.diagram:
         text = load.diagram.size
+    elif load.slip is not None:
+        text = f"slip {load.slip:g}"
     else:
-        text = (
-            f"slip {load.slip:g}"
-            if load.slip is not None
-            else f"torque as the speed to the power {load.power:g}"
-        )
+        text = f"torque as the speed to the power {load.power:g}"
     yield CheckEntry("load", text)
 
 
 def _crankshaft_entries(case: Case) -> Iterator[CheckEntry]:
-    machine, path = case.machine, ("crankshaft",)
+    """Yield what `kurbel bearings` and `kurbel stress` compute of a crankshaft, or why they cannot."""
+    machine = case.machine
     if machine.crankshaft is None:
         return
+    path = ("crankshaft",)
     for text in as_far_as_solved(bearing_warnings(case), "bearings"):
         yield CheckEntry("bearings", text, "warning", path)
     from kurbel.solver.shaft import shaft_obstacle, strength_obstacle
 
     if not shaft_obstacle(machine):
         yield CheckEntry("computed", "loads on pins and main bearings")
-    if strength_obstacle(machine):
-        yield _left_out(f"strength: {strength_obstacle(machine)}", path)
-    else:
-        yield from _computed(
-            "forces on the bearings, stresses in pin and webs", strength_left_out(machine), path
-        )
+    obstacle = strength_obstacle(machine)
+    if obstacle:
+        yield _left_out(f"strength: {obstacle}", path)
+        return
+    computed = "forces on the bearings, stresses in pin and webs"
+    yield from _computed(computed, strength_left_out(machine), path)
 
 
 def _oil_film_entries(case: Case) -> Iterator[CheckEntry]:
@@ -227,9 +255,9 @@ def _oil_film_entries(case: Case) -> Iterator[CheckEntry]:
         return
     for text in as_far_as_solved(film_warnings(case), "bearings"):
         yield CheckEntry("oil film", text, "warning", path)
-    having = [bearing.name for bearing in bearings if bearing.oil and not bearing.film_obstacle]
-    if having:
-        yield CheckEntry("computed", f"oil film of {together(having)}")
+    with_film = [bearing.name for bearing in bearings if bearing.oil and not bearing.film_obstacle]
+    if with_film:
+        yield CheckEntry("computed", f"oil film of {together(with_film)}")
     for bearing in bearings:
         if bearing.film_obstacle:
             yield _left_out(f"oil film of {bearing.name}: {bearing.film_obstacle}", path)
@@ -238,25 +266,24 @@ def _oil_film_entries(case: Case) -> Iterator[CheckEntry]:
 def _balance_entries(case: Case) -> Iterator[CheckEntry]:
     """Yield what `kurbel balance` computes of a machine with axial positions, counterweights or driven wheels."""
     machine = case.machine
-    placed = any(
-        cylinder.axial_position is not None or cylinder.counterweights
-        for cylinder in machine.cylinders
-    )
-    if not (placed or machine.counterweights or machine.balance_shafts or machine.locomotive):
+    is_balanced = bool(machine.counterweights or machine.balance_shafts or machine.locomotive)
+    for cylinder in machine.cylinders:
+        if cylinder.axial_position is not None or cylinder.counterweights:
+            is_balanced = True
+    if not is_balanced:
         return
     try:
-        lacking = [*balance_left_out(case)]
+        left_out = [*balance_left_out(case)]
     except KurbelError as error:
         yield _left_out(str(error))
-    else:
-        yield from _computed(
-            "unbalanced forces and moments, their orders, best counterweights", lacking
-        )
+        return
+    computed = "unbalanced forces and moments, their orders, best counterweights"
+    yield from _computed(computed, left_out)
 
 
 def _shaft_entries(case: Case) -> Iterator[CheckEntry]:
     """Yield what `kurbel torsion` computes of a shaft line or a coupling, or why it cannot."""
-    shaft, path = case.machine.shaft, ("shaft",)
+    shaft = case.machine.shaft
     if shaft is None and case.machine.coupling is None:
         return
     from kurbel.report.torsion import torsion_left_out, torsion_warnings
@@ -266,46 +293,53 @@ def _shaft_entries(case: Case) -> Iterator[CheckEntry]:
     if shaft is None:
         return
     yield CheckEntry("masses", str(len(shaft.masses)))
+    path = ("shaft",)
     try:
-        found = case.torsion
+        torsion = case.torsion
     except KurbelError as error:
         yield _left_out(f"torsional vibration: {error}", path)
-    else:
-        forced = "" if found.obstacle else ", torques and stresses"
-        yield from _computed(
-            f"natural frequencies, critical speeds{forced}", torsion_left_out(found), path
-        )
+        return
+    computed = "natural frequencies, critical speeds"
+    if not torsion.obstacle:
+        computed += ", torques and stresses"
+    yield from _computed(computed, torsion_left_out(torsion), path)
 
 
-def _with_compressor(forces: CylinderForces) -> bool:
-    chambers = (chamber for gas in forces.drive.gas for chamber in gas.piston.chambers.values())
-    return any(chamber.compresses for chamber in chambers)
+def _delivers(forces: CylinderForces) -> bool:
+    """Return whether a cylinder has a pump or a compressor."""
+    chambers: list[Chamber] = []
+    for gas in forces.drive.gas:
+        chambers += gas.piston.chambers.values()
+    has_compressor = any(chamber.compresses for chamber in chambers)
+    return has_compressor or bool(any_of(forces.drive.pumping))
 
 
 def _delivery_entries(case: Case) -> Iterator[CheckEntry]:
     """Yield what `kurbel delivery` computes of a machine with pumps or compressors, or why it cannot."""
-    if not any(
-        any_of(forces.drive.pumping) or _with_compressor(forces) for forces in case.cylinders
-    ):
+    if not any(map(_delivers, case.cylinders)):
         return
-    with suppress(KurbelError):  # nothing is delivered
-        from kurbel.report.delivery import delivery_left_out, delivery_warnings
+    from kurbel.report.delivery import delivery_left_out, delivery_warnings
 
-        found = case.delivery
-        try:
-            yield from [
-                CheckEntry("delivery", text, "warning") for text in delivery_warnings(found)
-            ]
-        except KurbelError as error:
-            yield _left_out(str(error), ("pump",))
-            return
-        pump = (
-            ["flow"] * (case.machine.speed is not None) + ["fluctuating volume"]
-            if found.pump
-            else []
-        )
-        stages = ["stages and ends of compressors"] if found.stages else []
-        yield from _computed(", ".join([*pump, *stages]), delivery_left_out(found))
+    try:
+        delivery = case.delivery
+    except KurbelError:  # nothing is delivered
+        return
+    try:
+        warnings = [*delivery_warnings(delivery)]
+    except KurbelError as error:
+        yield _left_out(str(error), ("pump",))
+        return
+    for text in warnings:
+        yield CheckEntry("delivery", text, "warning")
+    computed = []
+    if delivery.pump and case.machine.speed is not None:
+        computed.append("flow")
+    if delivery.pump:
+        computed.append("fluctuating volume")
+    if delivery.stages:
+        computed.append("stages and ends of compressors")
+    with suppress(KurbelError):
+        yield from _computed(", ".join(computed), delivery_left_out(delivery))
 
 
 # for programs: each finding with its place in the machine file
@@ -330,17 +364,13 @@ def faults_found(file: str, error: KurbelError) -> list[Finding]:
     """Return what is wrong with a machine file that cannot be read."""
     if not isinstance(error, MachineFileError):
         return [Finding(file, None, None, None, str(error), "error")]
-    return [
-        Finding(
-            error.file_name,
-            fault.line,
-            fault.column,
-            path_text(fault.path) or None,
-            fault.message,
-            "error",
+    findings = []
+    for fault in error.faults:
+        key = path_text(fault.path) or None
+        findings.append(
+            Finding(error.file_name, fault.line, fault.column, key, fault.message, "error")
         )
-        for fault in error.faults
-    ]
+    return findings
 
 
 Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
@@ -348,26 +378,32 @@ Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
 
 def findings(machine: Machine, checked: Checked, locate: Locate) -> list[Finding]:
     """Return the outcome of a check for programs; locate: adds to faults their places in the text of the file."""
-    several, origin = len(machine.cylinders) > 1, machine.origin
-    found: list[tuple[Path, str, str]] = []
+    # paths, messages and severities
+    messages: list[tuple[Path, str, str]] = []
     for section in checked.sections:
-        head = f"{section.title}: " if several and section.cylinder else ""
-        found += [
-            (entry.path, f"{head}{entry.what}: {entry.text}", entry.severity)
-            for entry in section.entries
-            if entry.severity
-        ]
-    found += [
-        (one.path, str(one.error).removeprefix(f"{path_text(one.path)}: "), "error")
-        for one in checked.unjudged
-    ]
+        is_of_several = section.cylinder and len(machine.cylinders) > 1
+        prefix = f"{section.title}: " if is_of_several else ""
+        for entry in section.entries:
+            if entry.severity:
+                text = f"{prefix}{entry.what}: {entry.text}"
+                messages.append((entry.path, text, entry.severity))
+    for entry in checked.unjudged:
+        text = str(entry.error).removeprefix(f"{path_text(entry.path)}: ")
+        messages.append((entry.path, text, "error"))
 
-    at_keys = [Fault(path, "", at_key=True) for path in {path for path, _, _ in found if path}]
-    located = locate(origin.text, at_keys) if origin and at_keys else ()
-    places = {fault.path: fault for fault in located}
-    unknown, file = Fault((), ""), origin.name if origin else machine.name
-    return [
-        Finding(file, at.line or None, at.column or None, path_text(path) or None, text, severity)
-        for path, text, severity in found
-        for at in [places.get(path, unknown)]
-    ]
+    # where the keys are
+    paths = {path for path, _, _ in messages if path}
+    origin = machine.origin
+    positions: dict[Path, Fault] = {}
+    if origin and paths:
+        at_keys = [Fault(path, "", at_key=True) for path in paths]
+        positions = {fault.path: fault for fault in locate(origin.text, at_keys)}
+
+    file = origin.name if origin else machine.name
+    findings = []
+    for path, text, severity in messages:
+        position = positions.get(path, Fault((), ""))
+        line = position.line or None
+        column = position.column or None
+        findings.append(Finding(file, line, column, path_text(path) or None, text, severity))
+    return findings

@@ -48,11 +48,13 @@ class CheckEntry(NamedTuple):
 
 def compared_entries(case: Case, cases: Sequence[Case] = ()) -> list[CheckEntry]:
     """Return how limits and expectations of a machine compare, in its load cases, too."""
-    found = [*judged(case)]
-    for one in cases:
-        of_case = f", {one.machine.origin.case}" if one.machine.origin else ""
-        found += [entry._replace(what=entry.what + of_case) for entry in judged(one)]
-    return found
+    entries = [*judged(case)]
+    for load_case in cases:
+        origin = load_case.machine.origin
+        suffix = f", {origin.case}" if origin else ""
+        for entry in judged(load_case):
+            entries.append(entry._replace(what=entry.what + suffix))
+    return entries
 
 
 @np.errstate(all="ignore")
@@ -61,66 +63,114 @@ def judged(case: Case) -> Iterator[CheckEntry]:
 
     Values that are equal to nine digits are compared once.
     """
-    machine, declared = case.machine, KEY_VALUES
-    figures = [("limits", *limit) for limit in machine.limits] + [
-        ("expect", *one) for one in machine.expect
-    ]
-    for key, name, figure in figures:
-        bound = figure if isinstance(figure, (Bound, Expected)) else Bound(figure)
-        quantity, path = declared[scoped(name)[1]], (key, bound.name or name)
-        try:
-            found = _values(case, name)
-            if not found:
-                text = f"{quantity.text[:1].lower()}{quantity.text[1:]}"
-                raise UsageError(f"{no_such_value(path[1], quantity.id)}: {text}")
-        except KurbelError as error:
-            yield CheckEntry(name, "", path=path, error=type(error)(f"{path_text(path)}: {error}"))
-            continue
-        verdicts = [
-            _compared(path, quantity, bound, together([where for where, _ in equal]), equal[0][1])
-            for equal in grouped(found, lambda one: f"{one[1]:.9g}")
-        ]
-        yield from verdicts
-        is_within = all(verdict.severity == "info" for verdict in verdicts)
-        if is_within and not isinstance(bound, Expected):
-            siblings = declared.of_chapter_with(quantity.id)
-            yield from _beyond_by_sign(case, name, bound, path, siblings)
+    for name, limit in case.machine.limits:
+        bound = limit if isinstance(limit, Bound) else Bound(limit)
+        yield from _judged_figure(case, "limits", name, bound)
+    for name, expected in case.machine.expect:
+        yield from _judged_figure(case, "expect", name, expected)
+
+
+def _judged_figure(
+    case: Case, key: str, name: str, bound: Bound | Expected
+) -> Iterator[CheckEntry]:
+    """Yield how the values that one limit or expectation is for compare; key: `limits` or `expect`."""
+    quantity = KEY_VALUES[scoped(name)[1]]
+    path = (key, bound.name or name)
+    # the values, with their owners
+    try:
+        values = _values(case, name)
+        if not values:
+            meaning = f"{quantity.text[:1].lower()}{quantity.text[1:]}"
+            raise UsageError(f"{no_such_value(path[1], quantity.id)}: {meaning}")
+    except KurbelError as error:
+        yield CheckEntry(name, "", path=path, error=type(error)(f"{path_text(path)}: {error}"))
+        return
+    # equal ones are compared once
+    is_within = True
+    for equal in grouped(values, lambda owner_and_value: f"{owner_and_value[1]:.9g}"):
+        owners = together([owner for owner, _ in equal])
+        _, value = equal[0]
+        verdict = _compared(path, quantity, bound, owners, value)
+        is_within = is_within and verdict.severity == "info"
+        yield verdict
+    if is_within and not isinstance(bound, Expected):
+        siblings = KEY_VALUES.of_chapter_with(quantity.id)
+        yield from _beyond_by_sign(case, name, bound, path, siblings)
 
 
 def no_such_value(name: str, id: str) -> str:
     """Return the message that the machine, or the part of it with this name, does not have a key value."""
-    scope = {"": "this machine", MACHINE: "the whole machine"}.get(scoped(name)[0], scoped(name)[0])
-    return f"{scope} has no {id}"
+    scope, _ = scoped(name)
+    owner = {"": "this machine", MACHINE: "the whole machine"}.get(scope, scope)
+    return f"{owner} has no {id}"
 
 
 def _compared(
     path: Path, quantity: Quantity, bound: Bound | Expected, where: str, value: float
 ) -> CheckEntry:
     """Compare a value in SI with its bound or expectation; a value that is not finite cannot be compared."""
+    name = str(path[-1])
     if not math.isfinite(value):
         error = UsageError(f"{path_text(path)} ({where}): {too_large(quantity)}")
-        return CheckEntry(str(path[-1]), "", path=path, error=error)
-    kind, unit, noise = quantity.kind, bound.unit, quantity.is_noise(value)
-    size = f"< 1e{NOISE_POWER}" if noise else _shown(value, kind, unit)
+        return CheckEntry(name, "", path=path, error=error)
     if isinstance(bound, Expected):
-        low, high = bound.low - value, value - bound.high
-        ok = max(low, high) <= _ROUNDING * max(abs(bound.low), abs(bound.high))
-        limit = bound.text or f"{_shown(bound.low, kind, '')} to {_shown(bound.high, kind, '')}"
-        off = f", {_shown(max(low, high), kind, unit)} too {'small' if low > high else 'large'}"
-        text = f"{size}, expected {limit}  {'PASS' if ok else 'FAIL' + off}"
+        text, limit, is_met = _compared_with_expected(quantity, bound, value)
     else:
-        ok, (sign, broken) = (
-            not breaks(quantity, bound, value),
-            "≥<" if quantity.bounded_below else "≤>",
-        )
-        limit = f"{sign} {_shown(bound, kind, unit)}"
-        size = f"|{size}|" if quantity.id.endswith("_residual") and not noise else size
-        text = f"{size} {limit}  PASS" if ok else f"{size} {broken}{limit[1:]}  FAIL"
-    number = 100 * value if unit == "%" else float(convert(value, kind, unit))
-    severity, text = "info" if ok else "error", f"{text}  ({where})"
+        text, limit, is_met = _compared_with_bound(quantity, bound, value)
+    unit = bound.unit
+    number = 100 * value if unit == "%" else float(convert(value, quantity.kind, unit))
     return CheckEntry(
-        str(path[-1]), text, severity, path, number, unit or SI[kind], limit, where, quantity
+        name,
+        f"{text}  ({where})",
+        "info" if is_met else "error",
+        path,
+        number,
+        unit or SI[quantity.kind],
+        limit,
+        where,
+        quantity,
     )
+
+
+def _compared_with_expected(
+    quantity: Quantity, expected: Expected, value: float
+) -> tuple[str, str, bool]:
+    """Return the verdict on a value in SI, what is expected, and whether it is met."""
+    kind = quantity.kind
+    limit = expected.text
+    if not limit:
+        limit = f"{_shown(expected.low, kind, '')} to {_shown(expected.high, kind, '')}"
+    too_small_by = expected.low - value
+    too_large_by = value - expected.high
+    deviation = max(too_small_by, too_large_by)
+    is_met = deviation <= _ROUNDING * max(abs(expected.low), abs(expected.high))
+    verdict = "PASS"
+    if not is_met:
+        size = "small" if too_small_by > too_large_by else "large"
+        verdict = f"FAIL, {_shown(deviation, kind, expected.unit)} too {size}"
+    shown = _shown_value(quantity, value, expected.unit)
+    return f"{shown}, expected {limit}  {verdict}", limit, is_met
+
+
+def _compared_with_bound(quantity: Quantity, bound: Bound, value: float) -> tuple[str, str, bool]:
+    """Return the verdict on a value in SI, the bound, and whether it is met."""
+    shown = _shown_value(quantity, value, bound.unit)
+    counts_by_magnitude = quantity.id.endswith("_residual")
+    if counts_by_magnitude and not quantity.is_noise(value):
+        shown = f"|{shown}|"
+    shown_bound = _shown(bound, quantity.kind, bound.unit)
+    met_sign, broken_sign = ("≥", "<") if quantity.bounded_below else ("≤", ">")
+    limit = f"{met_sign} {shown_bound}"
+    if breaks(quantity, bound, value):
+        return f"{shown} {broken_sign} {shown_bound}  FAIL", limit, False
+    return f"{shown} {limit}  PASS", limit, True
+
+
+def _shown_value(quantity: Quantity, value: float, unit: str) -> str:
+    """Return a key value in SI with its unit; of what is only rounding, below which power of ten it is."""
+    if quantity.is_noise(value):
+        return f"< 1e{NOISE_POWER}"
+    return _shown(value, quantity.kind, unit)
 
 
 def breaks(quantity: Quantity, bound: float, value: float) -> bool:
@@ -144,18 +194,25 @@ def _beyond_by_sign(
 
     declared: the key values of the chapter that has this one.
     """
-    base, _, end = name.rpartition("_")
-    other, upward = (f"{base}_min", 1) if end == "max" else (f"{base}_max", -1)
-    quantity = declared.get(scoped(other)[1]) if end in ("max", "min") else None
-    if quantity is None or bound * upward <= 0 or other in dict(case.machine.limits):
+    base, _, extreme = name.rpartition("_")
+    if extreme == "max":
+        other, sign = f"{base}_min", 1
+    elif extreme == "min":
+        other, sign = f"{base}_max", -1
+    else:
         return
+    quantity = declared.get(scoped(other)[1])
+    has_limit = other in dict(case.machine.limits)
+    if quantity is None or has_limit or bound * sign <= 0:
+        return
+    # values of the other sign
     peak = f"{base}_peak"
-    advice = (
-        f"'{peak}' bounds the magnitude" if scoped(peak)[1] in declared else f"bound '{other}' too"
-    )
+    advice = f"bound '{other}' too"
+    if scoped(peak)[1] in declared:
+        advice = f"'{peak}' bounds the magnitude"
     with suppress(KurbelError):
         for where, value in _values(case, other):
-            if -value * upward > abs(bound) * (1 + _ROUNDING):
+            if -value * sign > abs(bound) * (1 + _ROUNDING):
                 size = _shown(value, quantity.kind, bound.unit)
                 text = f"{other} = {size} is beyond it with the other sign; {advice}  ({where})"
                 yield CheckEntry(str(path[-1]), text, "warning", path)
@@ -174,13 +231,12 @@ class Holder(NamedTuple):
 
 def _values(case: Case, name: str) -> list[tuple[str, float]]:
     """Return who has a key value that a figure of this name is for, with the values in SI; raises KurbelError."""
-    values = [
-        (holder.subject.name, holder.subject.answer(holder.quantity))
-        for holder in holders(case, name)
-    ]
-    return [
-        (where, number_of(value)) for where, value in values if isinstance(value, (Extreme, float))
-    ]
+    values = []
+    for holder in holders(case, name):
+        value = holder.subject.answer(holder.quantity)
+        if isinstance(value, (Extreme, float)):
+            values.append((holder.subject.name, number_of(value)))
+    return values
 
 
 def holders(case: Case, name: str) -> list[Holder]:
@@ -188,37 +244,43 @@ def holders(case: Case, name: str) -> list[Holder]:
 
     Without a scope, of each cylinder that has it, or would have it but for an error; else of the machine.
     """
-
-    def has_it(one: Holder) -> bool:
-        try:
-            return one.subject.answer(one.quantity) is not None
-        except KurbelError:
-            return True
-
     scope, id = scoped(name)
     cylinders = [cylinder.name for cylinder in case.machine.cylinders]
-    first = next(KEY_VALUES.commands_of(id))
     # what the only cylinder does not have, the machine does not have
-    may_be_of_whole = bool(scope) or len(cylinders) != 1
-    whole = ["flywheel"] if may_be_of_whole and id in key_values_of_chapters("flywheel") else []
+    commands = [next(KEY_VALUES.commands_of(id))]
+    may_be_of_machine = bool(scope) or len(cylinders) != 1
+    if may_be_of_machine and id in key_values_of_chapters("flywheel"):
+        commands.append("flywheel")
     of_machine: list[Holder] = []
-    for command in dict.fromkeys((first, *whole)):
-        own = []
+    for command in dict.fromkeys(commands):
+        of_scope = []
         for subject in subjects_of(case, command, pistons=bool(scope)):
             quantity = subject.lists.key_values(command).get(id)
             # of the throws of a crankshaft the worst counts, unless one is named
             is_in_worst = command == "stress" and not subject.whole and subject.name != scope
             if quantity is None or is_in_worst:
                 continue
-            one, of_cylinder = Holder(subject, quantity, command), subject.name in cylinders
-            owner = subject.name if of_cylinder or subject.name == scope else subject.of or MACHINE
-            if owner == scope or (not scope and of_cylinder and has_it(one)):
-                own.append(one)
-            elif not scope and not of_cylinder:
-                of_machine.append(one)
-        if own:
-            return own
+            holder = Holder(subject, quantity, command)
+            is_cylinder = subject.name in cylinders
+            if scope:
+                is_named = subject.name == scope
+                if is_named or (not is_cylinder and (subject.of or MACHINE) == scope):
+                    of_scope.append(holder)
+            elif not is_cylinder:
+                of_machine.append(holder)
+            elif _has_value(holder):
+                of_scope.append(holder)
+        if of_scope:
+            return of_scope
     return of_machine
+
+
+def _has_value(holder: Holder) -> bool:
+    """Return whether a subject has its key value, or would have it but for an error."""
+    try:
+        return holder.subject.answer(holder.quantity) is not None
+    except KurbelError:
+        return True
 
 
 # load cases: a row for each, of the key values of a command
@@ -226,7 +288,8 @@ def holders(case: Case, name: str) -> list[Holder]:
 
 def name_of(case: Case) -> str:
     """Return the name of a load case, or of the machine itself."""
-    return case.machine.origin.case if case.machine.origin else case.machine.name
+    machine = case.machine
+    return machine.origin.case if machine.origin else machine.name
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name
@@ -242,34 +305,44 @@ def cases_report(
     base: the machine as it is without them; names: ids or symbols of the key values. Raises UsageError for a name that
     is none, and if no case has any.
     """
+    # the key values that are wanted
     wanted = names or COMMANDS[command].in_cases.split()
     declared = key_values_of(command, wanted)
-    known = {name: called(name, declared.values()) for name in wanted}
-    for name in (name for name, ids in known.items() if not ids):
-        near = did_you_mean(name, tuple(declared))
-        raise UsageError(
-            f"--columns: '{text_in_one_line(name)}' is no key value of kurbel {command}{near}"
-        )
-    ids = [ids[0] for ids in known.values()]
+    chosen: dict[str, Quantity] = {}
+    for name in wanted:
+        ids = called(name, declared.values())
+        if not ids:
+            hint = did_you_mean(name, tuple(declared))
+            raise UsageError(
+                f"--columns: '{text_in_one_line(name)}' is no key value of kurbel {command}{hint}"
+            )
+        chosen[ids[0]] = declared[ids[0]]
+
+    # rows by the part of the machine; a case that cannot be computed is a note
     rows: dict[str, list[PlaceRow]] = {}
     notes: list[str] = []
     for case in cases:
         try:
             for subject in subjects_of(case, command):
-                answers = {id: number_of(subject.answer(declared[id])) for id in ids}
-                values = {id: one for id, one in answers.items() if isinstance(one, float)}
+                values = _numbers(subject, chosen)
                 if values:
                     rows.setdefault(subject.name, []).append(((name_of(case),), values))
         except KurbelError as error:
             notes.append(f"{name_of(case)}: {error}")
     if not rows:
-        raise UsageError("; ".join(notes) or f"{base.name}: no case has any of {', '.join(ids)}")
-    chosen = {id: declared[id] for id in ids}
+        none = f"{base.name}: no case has any of {', '.join(chosen)}"
+        raise UsageError("; ".join(notes) or none)
 
+    # a table for each part
     parts = []
-    for name, of_part in rows.items():
-        title = f"Load cases: {name}" if len(rows) > 1 else "Load cases"
-        parts.append(
-            Subject(name, tables=[Places("cases", title, ("case",), chosen, of_part, headed=True)])
-        )
+    for part, rows_of_part in rows.items():
+        title = f"Load cases: {part}" if len(rows) > 1 else "Load cases"
+        table = Places("cases", title, ("case",), chosen, rows_of_part, headed=True)
+        parts.append(Subject(part, tables=[table]))
     return report_on(Frame(command, (), None, system), base, "Load cases", parts, notes)
+
+
+def _numbers(subject: Subject, quantities: Mapping[str, Quantity]) -> dict[str, float]:
+    """Return those of these key values that are numbers, by id."""
+    answers = {id: number_of(subject.answer(quantity)) for id, quantity in quantities.items()}
+    return {id: answer for id, answer in answers.items() if isinstance(answer, float)}

@@ -35,7 +35,8 @@ class Outcome(NamedTuple):
         """The exit status of a check of this file alone."""
         if self.error:
             return self.error.exit_status
-        return BROKEN if self.checked and self.checked.broken else DONE
+        is_broken = self.checked is not None and self.checked.broken
+        return BROKEN if is_broken else DONE
 
     @property
     def findings(self) -> list[Finding]:
@@ -62,23 +63,36 @@ def check_files(
     look = look_at(file_name, Look(width=width))
     if format == "table":
         write_out(_as_text(outcomes, look), file_name)
-        for error in (outcome.error for outcome in outcomes if outcome.error):
-            if len(files) == 1:
-                raise error
-            to_stderr(message_of(error))
+        for outcome in outcomes:
+            if outcome.error and len(files) == 1:
+                raise outcome.error
+            if outcome.error:
+                to_stderr(message_of(outcome.error))
     else:
-        found = [
-            (outcome.file, [finding._asdict() for finding in outcome.findings])
-            for outcome in outcomes
-        ]
-        if format == "junit":
-            write_out(findings_junit(found, look._replace(encoding="utf-8")), file_name, "utf-8")
-        else:
-            only = outcomes[0].machine if len(outcomes) == 1 else None
-            name, made_from = (only.name, provenance(only)) if only else (None, None)
-            listed = [finding for _, each in found for finding in each]
-            write_out(findings_json(name, made_from, listed, look), file_name)
+        _write_findings(outcomes, format, look, file_name)
     return min((outcome.status for outcome in outcomes), key=_GRAVEST.index)
+
+
+def _write_findings(
+    outcomes: Sequence[Outcome], format: str, look: Look, file_name: str | None
+) -> None:
+    """Write all findings as `json` or `junit`."""
+    rows = []
+    for outcome in outcomes:
+        rows.append((outcome.file, [finding._asdict() for finding in outcome.findings]))
+    if format == "junit":
+        write_out(findings_junit(rows, look._replace(encoding="utf-8")), file_name, "utf-8")
+        return
+    # the machine is named where there is only one
+    name = made_from = None
+    machine = outcomes[0].machine
+    if machine and len(outcomes) == 1:
+        name = machine.name
+        made_from = provenance(machine)
+    all_rows = []
+    for _, rows_of_file in rows:
+        all_rows += rows_of_file
+    write_out(findings_json(name, made_from, all_rows, look), file_name)
 
 
 def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str | None) -> Outcome:
@@ -87,33 +101,34 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
         machine = load(file, tuple(overrides), case_name)
         if machine.uncertainty:  # is judged by what is in the file
             given_uncertainty(machine)
-        names = [case.name for case in machine.cases] if not case_name else []
-        cases = (
-            [Case(load_case) for load_case in load_cases(machine.origin, names)]
-            if machine.origin
-            else []
-        )
+        cases: list[Case] = []
+        if machine.origin and not case_name:
+            names = [case.name for case in machine.cases]
+            cases = list(map(Case, load_cases(machine.origin, names)))
     except KurbelError as error:
         return Outcome(file, error)
     refuse_overwriting(file_name, machine.trace_files)
-    found = checked(Case(machine), cases)
-    errors = [one.error for one in found.unjudged if one.error]
+    results = checked(Case(machine), cases)
     # all errors of a machine as one of the gravest kind
-    gravest = (
-        type(min(errors, key=lambda error: error.exit_status))("\n".join(map(str, errors)))
-        if errors
-        else None
-    )
-    return Outcome(file, gravest, machine, found)
+    errors = [entry.error for entry in results.unjudged if entry.error]
+    if not errors:
+        return Outcome(file, None, machine, results)
+    gravest = min(errors, key=lambda error: error.exit_status)
+    joined = type(gravest)("\n".join(map(str, errors)))
+    return Outcome(file, joined, machine, results)
 
 
 def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
     """Yield the listing of every machine that could be read; of several each after the name of its file."""
-    for number, one in enumerate(outcomes):
-        if one.checked:
-            topics = [
-                (topic.title, [(entry.what, entry.text) for entry in topic.entries])
-                for topic in one.checked.shown_once
-            ]
-            several = f"{one.file}: " if len(outcomes) > 1 else ""
-            yield "\n" * (number > 0) + listing(several + one.checked.title, topics, look)
+    for number, outcome in enumerate(outcomes):
+        if outcome.checked is None:
+            continue
+        topics = []
+        for topic in outcome.checked.shown_once:
+            entries = [(entry.what, entry.text) for entry in topic.entries]
+            topics.append((topic.title, entries))
+        title = outcome.checked.title
+        if len(outcomes) > 1:
+            title = f"{outcome.file}: {title}"
+        blank_line = "\n" if number > 0 else ""
+        yield blank_line + listing(title, topics, look)

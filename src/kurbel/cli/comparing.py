@@ -37,11 +37,9 @@ def compare(
         return int(not passed)
     if picture is not None:
         check_file(picture, "--plot")
-    machine = (
-        None
-        if file is None
-        else case_of(file, case_name, overrides, output.file_name, picture).machine
-    )
+    machine = None
+    if file is not None:
+        machine = case_of(file, case_name, overrides, output.file_name, picture).machine
     with ProgressLine("accuracy") as progress:
         report = accuracy_report(machine, quick, loads, progress)
     output.write(report)
@@ -50,16 +48,19 @@ def compare(
     return 0
 
 
-def answer_of(machine: Machine, asked: str) -> float | None:
+def answer_of(machine: Machine, request: str) -> float | None:
     """Return what the program gives for a request of `kurbel.accuracy.extremes`, in SI; None where it is left out."""
-    command, _, rest = asked.partition(" ")
+    command, _, arguments = request.partition(" ")
     if command not in ("find", "sweep"):
-        return answer(machine, asked)
-    given, _, wanted = rest.partition(" | ")
-    key, _, values = given.partition("=")
+        return answer(machine, request)
+    # 'find KEY=LOW:HIGH | EQUATION', 'sweep KEY=VALUES | COLUMN[ROW]'
+    axis, _, wanted = arguments.partition(" | ")
+    key, _, values = axis.partition("=")
     if command == "find":
         low, high = values.split(":")
-        return float(find(machine, {key: (low, high)}, wanted).found[0].values[0])
+        solutions = find(machine, {key: (low, high)}, wanted)
+        return float(solutions.found[0].values[0])
     column, _, row = wanted.rstrip("]").partition("[")
-    value = float(sweep(machine, {key: values.split(",")}, column)[column][int(row)])
+    rows = sweep(machine, {key: values.split(",")}, column)
+    value = float(rows[column][int(row)])
     return None if math.isnan(value) else value

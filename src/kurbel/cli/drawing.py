@@ -30,25 +30,28 @@ def draw_pictures(
         raise click.UsageError("--list draws nothing; leave --output out.")
     if file is None and not listed:
         raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
-    file_name = None if file_name == "-" else file_name
+    if file_name == "-":
+        file_name = None
     if size is not None:
         size = check_poster(size, file_name)
-        if set(names) - {"mechanism"} or listed:
+        has_other_pictures = set(names) - {"mechanism"}
+        if has_other_pictures or listed:
             raise click.UsageError(
                 "--poster draws the mechanism alone; leave other pictures and --list out."
             )
         names = ("mechanism",)
     elif file_name is not None:
         check_file(file_name)
-    options, look = (
-        PictureOptions(units or "metric", cylinder, angles),
-        Look(comma=comma, digits=digits, width=width),
-    )
+
+    # the list of pictures: all, or those of the machine
+    options = PictureOptions(units or "metric", cylinder, angles)
     case = None if file is None else case_of(file, case_name, overrides, file_name)
     if case is None or listed:
         kinds = PICTURES if case is None else pictures_of(case, options)
         write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
         return
+
+    look = Look(comma=comma, digits=digits, width=width)
     drawn = pictures(case, names, options)
     if size is not None and file_name is not None:
         from kurbel.page.summary import facts_of, subtitle_of, tiles  # which opens checks

@@ -5,7 +5,7 @@ import json
 import click
 
 from kurbel.cli.group import ProgressLine, to_stderr
-from kurbel.cli.options import format_of
+from kurbel.cli.options import format_of, refuse_contradictions
 from kurbel.designs.find import Solution, Solutions, find_solutions
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
@@ -40,7 +40,7 @@ def run_find(
     digits: int | None,
 ) -> None:
     """Search, and print, draw or write what is found: the options of the command. Raises KurbelError."""
-    refused = (
+    refuse_contradictions(
         (write and case_name, "--write prints FILE; leave --case out."),
         (write and format, "--write prints FILE; leave --format out."),
         (take and not write, "--take chooses the solution for --write; give --write too."),
@@ -48,12 +48,11 @@ def run_find(
         (plot and format, "--plot draws; leave --format out."),
         (plot and len(vary) > 1, "--plot draws a key value over one key, and two are varied."),
     )
-    for is_wrong, message in refused:
-        if is_wrong:
-            raise click.UsageError(message)
     if plot and file_name:
         check_file(file_name)
-    written = "table" if write or plot else format_of(format, file_name, _SUFFIXES, comma)
+    written = "table"
+    if not write and not plot:
+        written = format_of(format, file_name, _SUFFIXES, comma)
     refuse_overwriting(file_name, (file,))
     origin = source.read(file)._replace(case=case_name).set_over(overrides)
     with ProgressLine("find") as progress:
@@ -63,15 +62,16 @@ def run_find(
         write_out([_with_values(origin, solutions, solution)], file_name, "utf-8")
         return
 
-    system = units or ("si" if written in ("csv", "json") else "metric")
+    usual_system = "si" if written in ("csv", "json") else "metric"
+    system = units or usual_system
     if plot:
         draw_output([picture(solutions, system)], Look(comma=comma, digits=digits), file_name)
     elif written == "json":
-        text = json.dumps(as_json(solutions), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
-        write_out([text], file_name, "utf-8")
+        text = json.dumps(as_json(solutions), ensure_ascii=False, allow_nan=False, indent=1)
+        write_out([text + "\n"], file_name, "utf-8")
     else:
-        default_digits = None if written == "csv" else _DIGITS
-        look = Look(written, comma=comma, digits=digits or default_digits)
+        usual_digits = None if written == "csv" else _DIGITS
+        look = Look(written, comma=comma, digits=digits or usual_digits)
         titles, rows = as_rows(solutions, system)
         write_rows(rows, titles, look, file_name, to_stderr)
     for remark in remarks(solutions):
@@ -84,15 +84,20 @@ def _solution_to_write(solutions: Solutions, take: int | None) -> Solution:
     if count > 1 and not take:
         choices = "; ".join(_in_words(solutions, solution) for solution in solutions.found)
         raise click.UsageError(f"--write: {count} solutions; choose one by --take N: {choices}")
-    if take and take > count:
-        raise click.UsageError(f"--take {take}: there {'are' if count > 1 else 'is'} {count}.")
-    return solutions.found[(take or 1) - 1]
+    number = take or 1
+    if number > count:
+        verb = "are" if count > 1 else "is"
+        raise click.UsageError(f"--take {take}: there {verb} {count}.")
+    return solutions.found[number - 1]
 
 
 def _in_words(solutions: Solutions, solution: Solution) -> str:
     """Return the values of the varied keys, as in `bore = 450 mm, stroke = 600 mm`."""
-    pairs = zip(solutions.varied, solution.values)
-    return ", ".join(f"{varied.key} = {varied.written(value, 9)}" for varied, value in pairs)
+    equations = [
+        f"{varied.key} = {varied.written(value, 9)}"
+        for varied, value in zip(solutions.varied, solution.values)
+    ]
+    return ", ".join(equations)
 
 
 def _with_values(origin: Origin, solutions: Solutions, solution: Solution) -> str:

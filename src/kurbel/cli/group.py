@@ -41,11 +41,12 @@ _MEANINGS = {
 
 def exit_statuses(command: str = "") -> str:
     """Return the last sentence of the help of a command, or of `kurbel` itself."""
-    own = COMMANDS[command].statuses if command else (BROKEN, NO_SOLUTION)
-    listed = (
-        meaning for meaning in _MEANINGS if meaning not in (BROKEN, NO_SOLUTION) or meaning in own
-    )
-    return "Exit status: " + "; ".join(f"{status} {_MEANINGS[status]}" for status in listed)
+    of_command = COMMANDS[command].statuses if command else (BROKEN, NO_SOLUTION)
+    meanings = []
+    for status, meaning in _MEANINGS.items():
+        if status in of_command or status not in (BROKEN, NO_SOLUTION):
+            meanings.append(f"{status} {meaning}")
+    return "Exit status: " + "; ".join(meanings)
 
 
 def _legend(texts: Iterable[str]) -> str:
@@ -100,9 +101,13 @@ class Kurbel(click.Group):
         name = args[0]
         if name in COMMANDS or name.startswith("-"):
             return super().resolve_command(ctx, args)
-        meant = did_you_mean(name, tuple(COMMANDS))
-        way_out = "; 'kurbel forces FILE' computes a machine, 'kurbel --help' and 'kurbel COMMAND --help' explain"
-        raise click.UsageError(f"no command '{name}'{meant or way_out}", ctx)
+        hint = did_you_mean(name, tuple(COMMANDS))
+        if not hint:
+            hint = (
+                "; 'kurbel forces FILE' computes a machine, "
+                "'kurbel --help' and 'kurbel COMMAND --help' explain"
+            )
+        raise click.UsageError(f"no command '{name}'{hint}", ctx)
 
     def main(self, *args: Any, **extra: Any) -> NoReturn:
         # no message fails because standard error is closed or an encoding lacks one of its characters
@@ -111,57 +116,63 @@ class Kurbel(click.Group):
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
         warnings.simplefilter("error", RuntimeWarning)  # what numpy warns of is no result
-        status, message = DONE, ""
+        message = ""
         try:
             status = super().main(*args, **(extra | {"standalone_mode": False}))
-        except click.ClickException as error:
-            shown = StringIO()
-            error.show(shown)
-            status, message = error.exit_code, shown.getvalue()
-        except click.Abort:
-            status = INTERRUPTED
         except SystemExit:  # click's answer to a reader of its help that leaves early
-            pass
-        except KurbelError as error:
-            status, message = error.exit_status, message_of(error)
-        except (OverflowError, FloatingPointError, RuntimeWarning) as error:
-            status = WRONG
-            message = f"Error: numeric overflow ({error}); check magnitudes and units in the file"
-        except OSError as error:
-            silence(sys.stdout)
-            named = f"{error.filename}: " if error.filename else ""
-            status, message = WRONG, f"Error: {named}{error.strerror or error}"
+            status = DONE
         except Exception as error:
-            if os.environ.get(_DEBUG):
+            status, message = _status_and_message(error)
+            if status == INTERNAL and os.environ.get(_DEBUG):
                 raise
-            status = INTERNAL
-            message = (
-                f"Error: this is a bug in kurbel, not in your input: {type(error).__name__}: {error}\n"
-                f"Please report it; {_DEBUG}=1 shows where it happened."
-            )
-            # what Python before 3.12 makes of an interrupt that comes while attributes of a class are named
-            if isinstance(error.__cause__, KeyboardInterrupt):
-                status, message = INTERRUPTED, ""
         if message:
             to_stderr(message)
         sys.exit(status if isinstance(status, int) else DONE)
+
+
+def _status_and_message(error: Exception) -> tuple[int, str]:
+    """Return the exit status of an error that ended a run, and its message, '' for none."""
+    if isinstance(error, click.ClickException):
+        text = StringIO()
+        error.show(text)
+        return error.exit_code, text.getvalue()
+    if isinstance(error, click.Abort):
+        return INTERRUPTED, ""
+    if isinstance(error, KurbelError):
+        return error.exit_status, message_of(error)
+    if isinstance(error, (OverflowError, FloatingPointError, RuntimeWarning)):
+        return WRONG, f"Error: numeric overflow ({error}); check magnitudes and units in the file"
+    if isinstance(error, OSError):
+        silence(sys.stdout)
+        file = f"{error.filename}: " if error.filename else ""
+        return WRONG, f"Error: {file}{error.strerror or error}"
+    # what Python before 3.12 makes of an interrupt that comes while attributes of a class are named
+    if isinstance(error.__cause__, KeyboardInterrupt) and not os.environ.get(_DEBUG):
+        return INTERRUPTED, ""
+    return INTERNAL, (
+        f"Error: this is a bug in kurbel, not in your input: {type(error).__name__}: {error}\n"
+        f"Please report it; {_DEBUG}=1 shows where it happened."
+    )
 
 
 def message_of(error: KurbelError) -> str:
     """Return the message of an error; for a machine file all faults, with source lines cut to the terminal's width."""
     if not isinstance(error, MachineFileError):
         return f"Error: {error}"
-    return error.pretty(min(terminal_size((104, 24))[0], 104), _stderr_look().text)
+    width, _ = terminal_size((104, 24))
+    return error.pretty(min(width, 104), _stderr_look().text)
 
 
 def _stderr_look() -> Look:
+    """Return the look of texts in the encoding of standard error."""
     return Look(encoding=getattr(sys.stderr, "encoding", None) or "utf-8")
 
 
 def to_stderr(message: str) -> None:
     """Write a message to standard error in its encoding; nothing if it is full or closed."""
     try:
-        click.echo("\n".join(_stderr_look().text(line) for line in message.splitlines()), err=True)
+        lines = map(_stderr_look().text, message.splitlines())
+        click.echo("\n".join(lines), err=True)
     except (OSError, ValueError):
         silence(sys.stderr)
 
@@ -173,9 +184,11 @@ class ProgressLine:
     """
 
     def __init__(self, command: str) -> None:
-        self._command, self._begun, self._wide = command, monotonic(), 0
-        shown = sys.stderr.isatty() and not os.environ.get("CI")
-        self._next = self._begun + _PATIENCE if shown else math.inf
+        self._command = command
+        self._begin = monotonic()
+        self._width = 0
+        is_shown = sys.stderr.isatty() and not os.environ.get("CI")
+        self._next = self._begin + _PATIENCE if is_shown else math.inf
 
     def __call__(self, doing: str, share: float = 0.0) -> None:
         """Show what is being done; share: completed share of all, 0 if unknown."""
@@ -183,30 +196,38 @@ class ProgressLine:
         if now < self._next:
             return
         self._next = now + _PATIENCE / 10
-        left = (now - self._begun) * (1 / share - 1) if share else 0.0
-        minutes = f"{left / 60:.0f} min" if left >= 100 else f"{left:.0f} s"
-        self._write(f"kurbel {self._command}: {doing}{f', {minutes} left' if share else ''}")
+        text = f"kurbel {self._command}: {doing}"
+        if share:
+            seconds = (now - self._begin) * (1 / share - 1)
+            remaining = f"{seconds / 60:.0f} min" if seconds >= 100 else f"{seconds:.0f} s"
+            text += f", {remaining} left"
+        self._write(text)
 
     def counted(self, items: Iterable[Item], what: str, count: int) -> Iterator[Item]:
         """Yield the items and show how many of them are done; what: their name in the plural."""
         with self:
-            for number, one in enumerate(items):
+            for number, item in enumerate(items):
                 self(f"{number} of {count} {what}", number / max(count, 1))
-                yield one
+                yield item
 
     def __enter__(self) -> "ProgressLine":
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._wide:
+        if self._width:
             self._write("")
 
     def _write(self, text: str) -> None:
-        text = _stderr_look().text(text)[: terminal_size()[0] - 1]
+        """Write a text over the line; '' leaves an empty line, in which the next output begins."""
+        terminal_width, _ = terminal_size()
+        text = _stderr_look().text(text)[: terminal_width - 1]
+        line = f"\r{text.ljust(self._width)}"
+        if not text:
+            line += "\r"
         with suppress(OSError, ValueError):
-            sys.stderr.write(f"\r{text.ljust(self._wide)}" + "\r" * (not text))
+            sys.stderr.write(line)
             sys.stderr.flush()
-        self._wide = len(text)
+        self._width = len(text)
 
 
 @click.group(

@@ -24,10 +24,10 @@ Command = TypeVar("Command", bound=Callable[..., object])
 _MOST_STEPS = 10_000
 
 
-def _read(parse: Callable[..., float], *given: str) -> float:
+def _read(parse: Callable[..., float], *arguments: str) -> float:
     """Return the parsed value; raises BadParameter for a text that cannot be parsed."""
     try:
-        return parse(*given)
+        return parse(*arguments)
     except UnitError as error:
         raise click.BadParameter(str(error)) from None
 
@@ -39,7 +39,7 @@ def number(text: str) -> float:
 
 def numbers(text: str) -> tuple[float, ...]:
     """Return numbers separated by commas, in the order given; or from, to, by steps: `0.5:12:0.5`."""
-    return _each(text, number, "0.5:12:0.5")
+    return _number_list(text, number, "0.5:12:0.5")
 
 
 def speeds(text: str) -> tuple[float, ...]:
@@ -49,15 +49,15 @@ def speeds(text: str) -> tuple[float, ...]:
     """
     unit = written_unit(text.replace(":", ",").rpartition(",")[2])
 
-    def speed(one: str) -> float:
-        found = _read(
-            parse_quantity, one if written_unit(one) else f"{one} {unit}".strip(), "speed"
-        )
-        if not found > 0:
+    def read_speed(item: str) -> float:
+        if not written_unit(item):
+            item = f"{item} {unit}".strip()
+        speed = _read(parse_quantity, item, "speed")
+        if not speed > 0:
             raise click.BadParameter(f"'{text}': it must be more than 0")
-        return found
+        return speed
 
-    return _each(text, speed, "300:1500:10 rpm")
+    return _number_list(text, read_speed, "300:1500:10 rpm")
 
 
 def frequency(text: str) -> float:
@@ -68,54 +68,60 @@ def frequency(text: str) -> float:
     return first
 
 
-def _each(text: str, read: Callable[[str], float], sample: str) -> tuple[float, ...]:
+def _number_list(text: str, read: Callable[[str], float], sample: str) -> tuple[float, ...]:
     """Return what is read between commas, or the numbers from, to, by steps."""
-    found = tuple(map(read, text.replace(":", ",").split(",")))
+    numbers = tuple(map(read, text.replace(":", ",").split(",")))
     if ":" not in text:
-        return found
-    if len(found) != 3 or "," in text or not found[2] > 0 or found[1] < found[0]:
-        raise click.BadParameter(f"'{text}': write from, to and step as '{sample}'")
-    low, high, step = found
+        return numbers
+    message = f"'{text}': write from, to and step as '{sample}'"
+    if len(numbers) != 3 or "," in text:
+        raise click.BadParameter(message)
+    low, high, step = numbers
+    if not step > 0 or high < low:
+        raise click.BadParameter(message)
     if (high - low) / step > _MOST_STEPS:
         raise click.BadParameter(f"'{text}': more than {_MOST_STEPS} steps; take larger ones")
     count = int((high - low) / step + 1e-9) + 1
-    return tuple(
-        float(f"{low + step * index:.15g}") for index in range(count)
-    )  # 3 · 0.1 is written 0.3
+    # 15 digits, so that 3 · 0.1 is 0.3
+    return tuple(float(f"{low + step * index:.15g}") for index in range(count))
 
 
 def words(text: str) -> tuple[str, ...]:
     """Return words separated by commas, in the order given, at least one; empty ones are skipped."""
-    found = tuple(word.strip() for word in text.split(",") if word.strip())
-    if not found:
+    names = tuple(filter(None, map(str.strip, text.split(","))))
+    if not names:
         raise click.BadParameter(f"'{text}' names no column; leave the option out, or name one")
-    return found
+    return names
 
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
     from kurbel.quantities import COLUMNS
 
-    ids = []
+    chosen_ids = []
     for name in COLUMNS.names_of(words(text)):
-        found = COLUMNS.ids_of(name)
-        if wrong := ambiguity(name, found):
-            raise click.BadParameter(wrong)
-        ids.append(found[0] if found else name)  # the report checks whether this machine has it
-    return tuple(ids)
+        ids = COLUMNS.ids_of(name)
+        message = ambiguity(name, ids)
+        if message:
+            raise click.BadParameter(message)
+        # the report checks whether this machine has it
+        chosen_ids.append(ids[0] if ids else name)
+    return tuple(chosen_ids)
 
 
 def key_values(text: str) -> tuple[str, ...]:
     """Return names of key values separated by commas or blanks, in the order given; a name may have blanks itself."""
     from kurbel.quantities import KEY_VALUES
 
-    names = list[str]()
-    for piece in words(text):
-        parts = piece.split()
-        are_names = all(
-            KEY_VALUES.ids_of(part.rpartition(".")[2]) for part in parts
-        )  # without their scopes
-        names += parts if are_names else [piece]
+    names: list[str] = []
+    for item in words(text):
+        parts = item.split()
+        # are all parts names, without their scopes?
+        are_names = all(KEY_VALUES.ids_of(part.rpartition(".")[2]) for part in parts)
+        if are_names:
+            names += parts
+        else:
+            names.append(item)
     return tuple(names)
 
 
@@ -130,11 +136,13 @@ def read_uncertainty(text: str) -> tuple[str, str]:
     from kurbel.declared.forms.figures import spread_text
 
     key, _, size = text.partition("=")
-    if not (key.strip() and spread_text(size)):
+    key = key.strip()
+    spread = spread_text(size)
+    if not key or not spread:
         raise click.UsageError(
             f"--uncertainty {text}: write KEY=SPREAD, above 0, such as bore='0.2 mm'."
         )
-    return key.strip(), spread_text(size)
+    return key, spread
 
 
 # --- what a shell completes, looked up when TAB is pressed
@@ -154,22 +162,27 @@ def completing(words: Callable[[click.Context, str], Iterable[str]]) -> Callable
 
 def _ids(ctx: click.Context, begun: str) -> Iterable[str]:
     """Return the columns of a command, or if it has none all key values, that are not in the list yet."""
-    every = _quantities()
-    before, comma, _ = begun.rpartition(",")
-    ids = dict.fromkeys(
-        every.columns(ctx.info_name or "") or (key_value.id for key_value in every.all_key_values)
-    )
-    return [before + comma + one for one in ids if one not in before.split(",")]
+    quantities = _quantities()
+    ids: Iterable[str] = quantities.columns(ctx.info_name or "")
+    if not ids:
+        ids = [key_value.id for key_value in quantities.all_key_values]
+    return _not_listed_yet(ids, begun)
 
 
 def _key_values(ctx: click.Context, begun: str) -> Iterable[str]:
     """Return the key values of a command that are not in the list yet."""
+    return _not_listed_yet(_quantities().key_values(ctx.info_name or ""), begun)
+
+
+def _not_listed_yet(ids: Iterable[str], begun: str) -> list[str]:
+    """Return a list of ids that is being written, with each further id that may follow."""
     before, comma, _ = begun.rpartition(",")
-    ids = _quantities().key_values(ctx.info_name or "")
-    return [before + comma + id for id in ids if id not in before.split(",")]
+    listed = before.split(",")
+    return [before + comma + id for id in dict.fromkeys(ids) if id not in listed]
 
 
 def _keys(ctx: click.Context, begun: str) -> Iterable[str]:
+    """Return the keys of a machine file."""
     from kurbel.report.keys import every_place
 
     return every_place()
@@ -179,13 +192,15 @@ def _machine(ctx: click.Context) -> "Machine":
     """Return the machine of the file on the line, which is not read to its end if it ends in an option."""
     from kurbel.machine_file import load
 
-    return load(next((word for word in ctx.args if word != "-"), ""))
+    files = [word for word in ctx.args if word != "-"]
+    return load(files[0] if files else "")
 
 
 def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
+    """Return the ids of all pictures."""
     from kurbel.pictures.pictures import PICTURES
 
-    return (*(picture.id for picture in PICTURES), "all")
+    return [*(picture.id for picture in PICTURES), "all"]
 
 
 complete_ids = completing(_ids)
@@ -445,19 +460,28 @@ def format_of(
     """
     suffix = os.path.splitext(file_name or "")[1].lower()
     of_suffix = suffixes.get(suffix)
-    if not (requested or of_suffix or suffix in _OF_NO_FORMAT):
-        known = ", ".join(suffixes)
+    is_unknown = not of_suffix and suffix not in _OF_NO_FORMAT
+    if is_unknown and not requested:
         raise click.UsageError(
-            f"--output {file_name}: no format has this suffix; write {known}, .txt, or --format."
+            f"--output {file_name}: no format has this suffix; "
+            f"write {', '.join(suffixes)}, .txt, or --format."
         )
     if requested and of_suffix and requested != of_suffix:
         raise click.UsageError(
-            f"--format {requested} contradicts the name {file_name}, which means {of_suffix}; change one of them."
+            f"--format {requested} contradicts the name {file_name}, "
+            f"which means {of_suffix}; change one of them."
         )
     written = requested or of_suffix or "table"
     if comma and written in ("json", "parquet"):
         raise click.UsageError(f"--decimal comma: {written} has the decimal point only.")
     return written
+
+
+def refuse_contradictions(*rules: tuple[object, str]) -> None:
+    """Raise UsageError for the first of these rules whose condition holds, with its message."""
+    for is_broken, message in rules:
+        if is_broken:
+            raise click.UsageError(message)
 
 
 def output_options(command: Callable[..., object]) -> Callable[..., object]:

@@ -37,10 +37,11 @@ def _ratio(text: str) -> _Ratio:
     if text in ("inf", "infinite"):
         return _Ratio(math.inf)
     value = number(text)
-    over, slash, under = text.partition("/")
-    if not (slash and 0 < value < 1):
+    numerator, slash, denominator = text.partition("/")
+    is_inverse = slash and 0 < value < 1
+    if not is_inverse:
         return _Ratio(value)
-    inverse = number(f"{under}/{over}")
+    inverse = number(f"{denominator}/{numerator}")
     return _Ratio(inverse, f"--ratio {text} is below 1 and was read as R/L: L/R = {inverse:g}.")
 
 
@@ -105,9 +106,11 @@ def table(
     """
     from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
 
-    if extra := click.get_current_context().args:
+    extra_words = click.get_current_context().args
+    if extra_words:
+        word = extra_words[0]
         raise click.UsageError(
-            f"'{extra[0]}' is no option; write 'kurbel table --ratio {extra[0]}' for this L/R"
+            f"'{word}' is no option; write 'kurbel table --ratio {word}' for this L/R"
         )
     values = tuple(ratio.value for ratio in ratios) or RATIOS
     printed = table_angles(step, angles, 180, len(values))
@@ -158,8 +161,11 @@ def example(name: str | None, file_name: str | None) -> None:
     """
     files = shipped()
     if name is None:
-        first_lines = [(each, text.partition("\n")[0].lstrip("# ")) for each, text in files.items()]
-        write_entries(first_lines, file_name)
+        entries = []
+        for machine, text in files.items():
+            first_line, _, _ = text.partition("\n")
+            entries.append((machine, first_line.lstrip("# ")))
+        write_entries(entries, file_name)
         return
     bare = name.removesuffix(".yaml")
     if bare not in files:
@@ -180,8 +186,10 @@ def keys(key: str | None) -> None:
     """
     from kurbel.report.keys import described, every_place
 
-    whole = [(path, ones[0].line) for path, ones in every_place().items()]
-    write_entries(whole if key is None else described(key))
+    if key is not None:
+        write_entries(described(key))
+        return
+    write_entries([(path, alternatives[0].line) for path, alternatives in every_place().items()])
 
 
 @kurbel.command()
@@ -191,16 +199,15 @@ def units(kind: str | None) -> None:
 
     Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2.
     """
-    named = {one.replace("_", " "): ", ".join(listed_units(one)) for one in kinds()}
-    chosen = (
-        named
-        if kind is None
-        else {name: units for name, units in named.items() if name == kind.replace("_", " ")}
-    )
-    if not chosen:
-        hint = did_you_mean(str(kind), tuple(named)) or f"; there are {', '.join(named)}"
+    lines = {name.replace("_", " "): ", ".join(listed_units(name)) for name in kinds()}
+    if kind is None:
+        write_entries(list(lines.items()))
+        return
+    name = kind.replace("_", " ")
+    if name not in lines:
+        hint = did_you_mean(kind, tuple(lines)) or f"; there are {', '.join(lines)}"
         raise UsageError(f"no kind of quantity '{kind}'{hint}")
-    write_entries(list(chosen.items()))
+    write_entries([(name, lines[name])])
 
 
 @kurbel.command()
@@ -219,4 +226,5 @@ def schema(answers: bool, file_name: str | None) -> None:
     from kurbel.machine_file.schema import json_schema
     from kurbel.render.json_text import answer_schema, indented
 
-    write_out((indented(answer_schema() if answers else json_schema()),), file_name, "utf-8")
+    document = answer_schema() if answers else json_schema()
+    write_out((indented(document),), file_name, "utf-8")

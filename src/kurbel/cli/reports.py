@@ -41,7 +41,7 @@ def _instead(name: str, text: str) -> Callable[[Command], Command]:
 
 _SHARED = {"where": stacked(where_option), "uncertainty": stacked(uncertainty_option)}
 """What the rows of commands call options that several commands take."""
-_OWN = {
+_OF_COMMAND = {
     "motion": row_options,
     "forces": stacked(
         row_options,
@@ -96,16 +96,20 @@ def command_of(row: Row) -> click.Command:
     def run(units: str | None, output: Output, **options: Any) -> None:
         from kurbel.cli.request import print_report
 
+        usual_system = "si" if output.look.format in ("csv", "json") else "metric"
         with messages_in(units or "metric"):
-            system = units or ("si" if output.look.format in ("csv", "json") else "metric")
-            print_report(row.word, output, units=system, **options)
+            print_report(row.word, output, units=units or usual_system, **options)
 
-    rows = (angle_options, columns_option) if row.over_angle else ()
-    cases = (_cases_option,) if row.in_cases else ()
-    shared = [_SHARED[word] for word in row.options]
-    own = (_OWN[row.word],) if row.word in _OWN else ()
-    with_options = stacked(
-        machine_file, *rows, part_options, units_option, output_options, *cases, *shared, *own
-    )
+    # the options, in the order of the help
+    options: list[Callable[..., Any]] = [machine_file]
+    if row.over_angle:
+        options += [angle_options, columns_option]
+    options += [part_options, units_option, output_options]
+    if row.in_cases:
+        options.append(_cases_option)
+    options += [_SHARED[word] for word in row.options]
+    if row.word in _OF_COMMAND:
+        options.append(_OF_COMMAND[row.word])
     text = f"{row.of.__doc__}\n\n    {_OF_EVERY}"
-    return click.command(row.word, cls=CommandWithKeyValues, help=text)(with_options(run))
+    command = click.command(row.word, cls=CommandWithKeyValues, help=text)
+    return command(stacked(*options)(run))

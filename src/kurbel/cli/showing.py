@@ -29,36 +29,34 @@ def write_page(
     """Write the report on one machine, or on two side by side: the options of the command."""
     if len(files) > 2 or files.count("-") > 1:
         raise click.UsageError("a report is of one machine, or of two side by side.")
-    if (
-        file_name is not None
-        and file_name != "-"
-        and not file_name.lower().endswith((".html", ".htm"))
-    ):
+    if file_name is None:
+        # a page of HTML is nothing to read in a terminal
+        if sys.stdout and sys.stdout.isatty():
+            raise click.UsageError(
+                "a report is a page for the browser; "
+                "give --output NAME.html, or - for this terminal."
+            )
+    elif file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
-    if (
-        file_name is None and sys.stdout and sys.stdout.isatty()
-    ):  # a page of HTML is nothing to read there
-        raise click.UsageError(
-            "a report is a page for the browser; give --output NAME.html, or - for this terminal."
-        )
     refuse_overwriting(file_name, files)
+
+    # the machines, with the keys of their files
     system = units or "metric"
     cases = [case_of(file, case_name, overrides, file_name) for file in files]
     keys = [key_texts(case.machine.origin) if case.machine.origin else () for case in cases]
+
     with ProgressLine("report") as progress:
-        if len(cases) == 1:
-            load_cases = (
-                cases_of(cases[0].machine) if cases[0].machine.cases and not case_name else []
-            )
-            document = whole_report(cases[0], keys[0], system, step, progress, load_cases)
-        else:
+        if len(cases) == 2:
             document = side_by_side(cases, keys, system, progress)
+        else:
+            machine = cases[0].machine
+            load_cases = cases_of(machine) if machine.cases and not case_name else []
+            document = whole_report(cases[0], keys[0], system, step, progress, load_cases)
     document = document._replace(title=title or document.title)
+
     # SOURCE_DATE_EPOCH decides the date where a page must come out the same every time
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    today = time.strftime(
-        "%Y-%m-%d", time.gmtime(float(epoch)) if epoch.isdecimal() else time.localtime()
-    )
-    write_out(
-        report_page(document, Look("html", comma=comma, digits=digits), today), file_name, "utf-8"
-    )
+    date = time.gmtime(float(epoch)) if epoch.isdecimal() else time.localtime()
+    look = Look("html", comma=comma, digits=digits)
+    page = report_page(document, look, time.strftime("%Y-%m-%d", date))
+    write_out(page, file_name, "utf-8")

@@ -3,13 +3,13 @@
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import closing
-
-import click
+from typing import NamedTuple
 
 from kurbel.cli.group import ProgressLine, to_stderr
-from kurbel.cli.options import format_of
+from kurbel.cli.options import format_of, refuse_contradictions
 from kurbel.designs.answers import Design, Head
 from kurbel.designs.chosen import (
+    Aim,
     RowCondition,
     column_summaries,
     pareto_front,
@@ -70,44 +70,38 @@ def run_sweep(
 ) -> None:
     """Compute and write the rows: the options of the command. Raises UsageError for those that do not go together."""
     written = format_of(format, file_name, _SUFFIXES, comma)
-    to_file = file_name not in (None, "-")
-    for_people = written in ("table", "markdown")
-    parquet = written == "parquet"
-    in_order = not (sort or pareto or summarised)
-    resumable = to_file and written in _LINES and in_order
-    refused = (
+    is_file = file_name not in (None, "-")
+    is_for_people = written in ("table", "markdown")
+    is_parquet = written == "parquet"
+    is_in_order = not (sort or pareto or summarised)
+    can_resume = is_file and written in _LINES and is_in_order
+    refuse_contradictions(
         (not (vary or cases), "Missing option '--vary' (the values to vary); or give --cases."),
         (cases and case_name, "--cases has every load case, --case one; leave one of them out."),
         (top and not sort, "--top N takes the first rows of --sort ID; give --sort too."),
         (
-            resume and not resumable,
+            resume and not can_resume,
             "--resume goes on in csv or json lines, rows in order; give --output FILE.csv.",
         ),
-        (parquet and not to_file, "Parquet is a file; give --output FILE.parquet."),
+        (is_parquet and not is_file, "Parquet is a file; give --output FILE.parquet."),
         (
-            summarised and (shard or parquet),
+            summarised and (shard or is_parquet),
             "--summary is of all rows, as text; no --shard, no parquet.",
         ),
         (dask and jobs, "give only one of --dask and --jobs."),
     )
-    for is_wrong, message in refused:
-        if is_wrong:
-            raise click.UsageError(message)
     refuse_overwriting(file_name, (file,))
 
     # the sweep, and which of its rows are wanted
-    origin = source.read(file)._replace(case=case_name).set_over(overrides)
-    axes = tuple(map(read_axis, vary))
-    most_rows = None if yes else MOST_ROWS
-    system = units or ("metric" if for_people else "si")
+    system = units or ("metric" if is_for_people else "si")
     sweep = Sweep(
         Spec(
-            origin,
-            axes,
+            source.read(file)._replace(case=case_name).set_over(overrides),
+            tuple(map(read_axis, vary)),
             side_by_side,
             sample,
             seed,
-            most_rows,
+            None if yes else MOST_ROWS,
             cases,
             columns or (),
             with_angles,
@@ -115,18 +109,14 @@ def run_sweep(
         )
     )
     rows = range(sweep.rows) if shard is None else rows_of_shard(shard, sweep.rows)
-    columns_to_choose_by = (*sweep.heads, *map(Head, sweep.texts))
-    row_conditions = [read_condition(condition, columns_to_choose_by) for condition in conditions]
-    aims = [read_aim(aim, columns_to_choose_by, "--pareto") for aim in pareto or ()]
-    order = None if sort is None else read_aim(sort, columns_to_choose_by, "--sort")
+    selection = _selection(sweep, conditions, pareto or (), sort, top)
 
     # the columns that are written
-    if for_people:
-        shown = sweep.shown
-    else:
-        shown = [(head.id, place) for place, head in enumerate(sweep.heads)]
-    names = tuple((name, sweep.heads[index].unit) for name, index in shown)
-    titles = Titles(names, sweep.texts, types=sweep.types() if parquet else ())
+    columns_shown = sweep.shown
+    if not is_for_people:
+        columns_shown = [(head.id, index) for index, head in enumerate(sweep.heads)]
+    names = tuple((name, sweep.heads[index].unit) for name, index in columns_shown)
+    titles = Titles(names, sweep.texts, types=sweep.types() if is_parquet else ())
     if summarised:
         titles = Titles(summary_heads(sweep.heads), row="column")
     look = Look(written, comma=comma, digits=digits)
@@ -135,47 +125,78 @@ def run_sweep(
     written_before = NOTHING_WRITTEN
     if resume:
         written_before, rows = rows_written_before(
-            file_name or "", sweep, titles, look, rows, row_conditions
+            file_name or "", sweep, titles, look, rows, selection.conditions
         )
-    headed = rows.start == 0 and written_before == NOTHING_WRITTEN
+    has_titles = rows.start == 0 and written_before == NOTHING_WRITTEN
 
-    jobs = jobs or (1 if shard else likely_jobs(len(rows)))
-    on_terminal = sys.stdout is not None and sys.stdout.isatty()
-    rows_show_progress = on_terminal and not file_name and not for_people
+    # computed row by row while they are written
+    if not jobs:
+        jobs = 1 if shard else likely_jobs(len(rows))
+    is_terminal = sys.stdout is not None and sys.stdout.isatty()
+    rows_show_progress = is_terminal and not file_name and not is_for_people
     with closing(computed_rows(sweep, rows, jobs, dask, to_stderr)) as computed:
         designs: Iterable[Design] = computed
         if not rows_show_progress:
             designs = ProgressLine("sweep").counted(designs, "designs", len(rows))
-        designs = (row for row in designs if _holds_all(row, row_conditions))
-        if aims:
-            designs = pareto_front(designs, aims)
-        if order:
-            designs = sorted(designs, key=order.of)[:top]
+        designs = selection.of(designs)
         if summarised:
             designs = column_summaries(designs, sweep.heads)
-        elif for_people:
-            designs = (_with_columns(row, shown) for row in designs)
-        advice = "; run again with --resume to continue" if resumable else ""
+        elif is_for_people:
+            designs = (_with_columns(row, columns_shown) for row in designs)
+        advice = "; run again with --resume to continue" if can_resume else ""
         write_rows(
             designs,
             titles,
             look,
             file_name,
-            lambda what_is_left: to_stderr(what_is_left + advice),
-            headed,
+            lambda message: to_stderr(message + advice),
+            has_titles,
             written_before,
         )
-    all_columns = not (columns or to_file or summarised)
-    if all_columns and for_people and on_terminal:
+    has_all_columns = is_for_people and not (columns or is_file or summarised)
+    if has_all_columns and is_terminal:
         to_stderr(
             f"{len(names)} columns; '--columns ID,ID' prints fewer, '-o rows.csv' writes a file"
         )
 
 
-def _holds_all(row: Design, conditions: Sequence[RowCondition]) -> bool:
-    return all(condition.holds(row) for condition in conditions)
+class _Selection(NamedTuple):
+    """Which rows of a sweep are written, and in which order."""
+
+    conditions: Sequence[RowCondition]
+    aims: Sequence[Aim]
+    order: Aim | None
+    top: int | None
+
+    def of(self, designs: Iterable[Design]) -> Iterable[Design]:
+        """Return the selected rows."""
+        designs = filter(self._is_wanted, designs)
+        if self.aims:
+            designs = pareto_front(designs, self.aims)
+        if self.order:
+            designs = sorted(designs, key=self.order.of)[: self.top]
+        return designs
+
+    def _is_wanted(self, design: Design) -> bool:
+        """Return whether a row meets all conditions."""
+        return all(condition.holds(design) for condition in self.conditions)
 
 
-def _with_columns(row: Design, shown: Sequence[tuple[str, int]]) -> Design:
+def _selection(
+    sweep: Sweep,
+    conditions: Iterable[str],
+    pareto: Iterable[str],
+    sort: str | None,
+    top: int | None,
+) -> _Selection:
+    """Return the selection that options describe by columns of the sweep; raises UsageError."""
+    heads = (*sweep.heads, *map(Head, sweep.texts))
+    row_conditions = [read_condition(condition, heads) for condition in conditions]
+    aims = [read_aim(aim, heads, "--pareto") for aim in pareto]
+    order = None if sort is None else read_aim(sort, heads, "--sort")
+    return _Selection(row_conditions, aims, order, top)
+
+
+def _with_columns(row: Design, columns_shown: Sequence[tuple[str, int]]) -> Design:
     """Return a row with the values of the columns that are shown."""
-    return row._replace(values=tuple(row.values[index] for _, index in shown))
+    return row._replace(values=tuple(row.values[index] for _, index in columns_shown))

@@ -223,6 +223,8 @@ MOST_POINTS = 500_000
 """Points or samples of one diagram."""
 MOST_ITEMS = 100
 """Items of one list, such as cylinders."""
+MOST_SHAFT_ITEMS = 400
+"""Items of a shaft line: masses, and the segments between them."""
 
 
 def range_of(kind: str) -> str:

@@ -28,7 +28,7 @@ from kurbel.solver.case import Case
 from kurbel.tables.tables import Column, Part, PlaceTable, Report
 
 SAMPLE, SLOW_SAMPLE = 2000, 200
-"""Sampled machines where the first order does not hold: computed in batches, and where each is computed alone."""
+"""Sampled machines where the first order does not hold; the second number where each of them is slow."""
 _PARTS = 20
 """Parts of a sample, computed one after another: a measured trace of each machine may be large."""
 _STEP = 0.1
@@ -177,7 +177,7 @@ def uncertainties(
 def _sampled(inputs: Inputs, bent: Sequence[Uncertain], counted: Counted) -> Iterator[Uncertain]:
     """Yield the uncertainties of nonlinear key values from a sample; shares are the squares of correlations."""
     requested = [uncertain.answer for uncertain in bent]
-    count = SLOW_SAMPLE if is_slow(inputs.binder.machine, requested) else SAMPLE
+    count = _sample_size(inputs.binder.machine, requested)
     shifts = np.vectorize(NormalDist().inv_cdf)(latin_hypercube(count, len(inputs.keys), 0))
     rows = []
     failures: list[str] = []
@@ -202,6 +202,19 @@ def _sampled(inputs: Inputs, bent: Sequence[Uncertain], counted: Counted) -> Ite
         yield Uncertain(
             uncertain.answer, uncertain.value, spread, tuple(shares), len(values), failed
         )
+
+
+def _sample_size(machine: Machine, requested: Sequence[Answer]) -> int:
+    """Return how many machines are sampled: fewer where one takes long by itself.
+
+    The speed under a load that depends on it is a periodic solution, by collocation.
+    """
+    load = machine.load
+    load_varies = load is not None and (load.slip is not None or bool(load.power))
+    solves_speed = load_varies and any(answer.command == "flywheel" for answer in requested)
+    if solves_speed or is_slow(machine, requested):
+        return SLOW_SAMPLE
+    return SAMPLE
 
 
 def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tuple[Array, list[str]]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +28,7 @@ from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
 from kurbel.declared.reading import REFUSED, text_in_one_line
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
+from kurbel.declared.units import MOST_SHAFT_ITEMS
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.cylinder import MOST_TURNS, Cylinder, counterweights, crowded
 from kurbel.machine.indicator import Chamber
@@ -58,8 +58,16 @@ STANDARD_ATMOSPHERE = 101325.0
 
 
 def _names(cylinders: tuple[Cylinder, ...] | EqualCylinders) -> list[str]:
-    listed = cylinders if isinstance(cylinders, (tuple, list)) else cylinders.cylinders
-    return [cylinder.name or f"cylinder {number}" for number, cylinder in enumerate(listed, 1)]
+    """Return the names of cylinders; those without one are named by their numbers."""
+    items = cylinders if isinstance(cylinders, (tuple, list)) else cylinders.cylinders
+    return [cylinder.name or f"cylinder {number}" for number, cylinder in enumerate(items, 1)]
+
+
+def _with_position(cylinder: Cylinder) -> Cylinder:
+    """Return the only cylinder, at φ = 0 if no crank position is given."""
+    if cylinder.crank_position is not None:
+        return cylinder
+    return replace(cylinder, crank_position=0.0)
 
 
 def _flywheel() -> type[Flywheel]:
@@ -210,7 +218,9 @@ class Machine(Record):
         least=0,
         instead="brake_power",
         needs="speed",
-        gives=lambda given: {"brake_power": 2 * math.pi * given["speed"] * given["brake_torque"]},
+        gives=lambda values: {
+            "brake_power": 2 * math.pi * values["speed"] * values["brake_torque"]
+        },
     )
     _cylinder = alternative(Inline(Cylinder, unless="cylinders"), "The keys of the only cylinder")
     _cylinders = alternative(
@@ -220,7 +230,7 @@ class Machine(Record):
         ),
         "Several cylinders as a list, or equal ones as one mapping; their keys are then not allowed at the top level",
         absent="one cylinder, flat",
-        gives=lambda given: {"cylinders": given["cylinders"]},
+        gives=lambda values: {"cylinders": values["cylinders"]},
     )
     _firing_order = alternative(
         FIRING_ORDER,
@@ -232,7 +242,7 @@ class Machine(Record):
         OneOf(Choice(("constant",)), RecordForm(_load)),
         "Resistance at the shaft",
         absent="constant",
-        gives=lambda given: {"load": None if given["load"] == "constant" else given["load"]},
+        gives=lambda values: {"load": None if values["load"] == "constant" else values["load"]},
     )
     effort: KnownDiagram | None = field(
         RecordForm(_known_effort),
@@ -263,7 +273,9 @@ class Machine(Record):
         _locomotive, "Driven wheels, for hammer blow and swaying couple", absent="no locomotive"
     )
     shaft: ShaftLine | None = field(
-        Listing(OneOf(Choice(("ground", "flywheel")), RecordForm(_shaft_part))),
+        Listing(
+            OneOf(Choice(("ground", "flywheel")), RecordForm(_shaft_part)), most=MOST_SHAFT_ITEMS
+        ),
         "Shaft line for torsional vibration, in order along the shaft: masses, shaft segments between them, gears, "
         "branches, `flywheel` (that of the machine) and `ground` (a fixed end)",
         absent="no torsional vibration",
@@ -329,28 +341,27 @@ class Machine(Record):
         **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
-        given = (cylinder,) if cylinder else cylinders
+        items = (cylinder,) if cylinder else cylinders
+        # faults of the shaft line are reported with those of the cylinders
         faults: list[Fault] = []
         if shaft:
             from kurbel.machine.shaft_line import ShaftLine, line_of, shaft_faults
 
-            faults = shaft_faults(shaft, _names(given))
+            faults = shaft_faults(shaft, _names(items))
         try:
+            # each cylinder at its crank angle
             if cylinder and not firing_order:
-                given = (
-                    replace(cylinder, crank_position=0.0)
-                    if cylinder.crank_position is None
-                    else cylinder,
-                )
+                items = (_with_position(cylinder),)
             elif cylinders or firing_order:
                 from kurbel.machine.several import in_order
 
-                given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
+                items = in_order(items, firing_order, keys.get("cycle", "two-stroke"))
             else:
-                given = ()
+                items = ()
+            names = _names(items)
             if shaft:
-                keys["shaft"] = ShaftLine((), ()) if faults else line_of(shaft, _names(given))
-            named = tuple(replace(one, name=name) for one, name in zip(given, _names(given)))
+                keys["shaft"] = ShaftLine((), ()) if faults else line_of(shaft, names)
+            named = tuple(replace(item, name=name) for item, name in zip(items, names))
             machine: Machine = super().of_keys(cylinders=named, **keys)
         except RuleError as error:
             raise RuleError(*error.faults, *faults) from None
@@ -358,100 +369,114 @@ class Machine(Record):
         return machine
 
     @classmethod
-    def faults_of_some(cls, given: ValuesByKey) -> list[Fault]:
+    def faults_of_some(cls, values: ValuesByKey) -> list[Fault]:
         """Return what is wrong with the keys; also with the shaft line if other keys could not be read."""
-        shaft, cylinders = (
-            given.get("shaft"),
-            given.get("cylinders", (given.get("cylinder", REFUSED),)),
-        )
-        unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
-        known: list[Fault] = []
-        if isinstance(shaft, tuple) and not unknown:
-            from kurbel.machine.shaft_line import shaft_faults
+        faults = super().faults_of_some(values)
+        shaft = values.get("shaft")
+        only_cylinder = (values.get("cylinder", REFUSED),)
+        cylinders = values.get("cylinders", only_cylinder)
+        has_refused = isinstance(cylinders, tuple) and REFUSED in cylinders
+        if not isinstance(shaft, tuple) or cylinders is REFUSED or has_refused:
+            return faults
+        from kurbel.machine.shaft_line import shaft_faults
 
-            known = shaft_faults(shaft, _names(cylinders))
-        return super().faults_of_some(given) + known
+        return faults + shaft_faults(shaft, _names(cylinders))
 
     def rules(self) -> Iterator[Rule]:
         """Yield the rules on the machine as a whole."""
-        nothing = not self.cylinders and self.effort is None and self.shaft is None
+        is_empty = not self.cylinders and self.effort is None and self.shaft is None
         none = "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"
-        yield Rule((), nothing, f"{none}, or 'effort', a given turning-moment diagram")
-        both = bool(self.cylinders) and self.effort is not None
-        yield Rule("effort", both, "'effort' replaces cylinders; give only one of them")
+        yield Rule((), is_empty, f"{none}, or 'effort', a given turning-moment diagram")
+        has_two_efforts = bool(self.cylinders) and self.effort is not None
+        yield Rule("effort", has_two_efforts, "'effort' replaces cylinders; give only one of them")
         yield from self._name_rules()
         for index, cylinder in enumerate(self.cylinders):
-            for number, piston in enumerate(cylinder.pistons):
-                inside = ("tandem", number - 1) if number else ()
-                rules = piston.indicator_rules(self.cycle_of_piston(cylinder, number), self.ambient)
-                yield from (rule.below("cylinders", index, *inside) for rule in rules)
-            if cylinder.friction:
-                rubbing = cylinder.friction.rules_beside(
-                    self.crankshaft, cylinder.mechanism.rubbing_pin
-                )
-                yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
+            for rule in self._rules_of_cylinder(cylinder):
+                yield rule.below("cylinders", index)
         if self.oil_film:
             frictions = [cylinder.friction for cylinder in self.cylinders]
             for rule in self.oil_film.rules_beside(self.crankshaft, frictions):
                 yield rule.below("oil_film")
         yield from _throw_of_first(self.cylinders)
         yield from crowded(self.cylinders)
-        for key, diagram in (
-            ("effort", self.effort),
-            ("load", self.load.diagram if self.load else None),
-        ):
+        yield from self._shaft_rules()
+
+    def _rules_of_cylinder(self, cylinder: Cylinder) -> Iterator[Rule]:
+        """Yield the rules on a cylinder that need the cycle, the ambient or the crankshaft of the machine."""
+        for number, piston in enumerate(cylinder.pistons):
+            path = ("tandem", number - 1) if number else ()
+            cycle = self.cycle_of_piston(cylinder, number)
+            for rule in piston.indicator_rules(cycle, self.ambient):
+                yield rule.below(*path)
+        if cylinder.friction:
+            rubbing_pin = cylinder.mechanism.rubbing_pin
+            for rule in cylinder.friction.rules_beside(self.crankshaft, rubbing_pin):
+                yield rule.below("friction")
+
+    def _shaft_rules(self) -> Iterator[Rule]:
+        """Yield the rules on what is on the shaft: effort, load, coupling, shaft line."""
+        # diagrams cover the cycle
+        diagrams = {"effort": self.effort, "load": self.load.diagram if self.load else None}
+        for key, diagram in diagrams.items():
             if diagram:
-                yield from (
-                    rule.below(key)
-                    for rule in diagram.rules_of_cycle(self._common_cycle, self.revolutions)
-                )
+                for rule in diagram.rules_of_cycle(self._common_cycle, self.revolutions):
+                    yield rule.below(key)
+        # an effort of which only the swing of energy is given
+        has_coupling = self.coupling is not None
         if self.effort and self.effort.alone:
             message = (
                 "needs the effort over the angle; of this one the swing of energy alone is given"
             )
             yield Rule("load", self.load is not None and self.load.varies, message)
-            yield Rule("coupling", self.coupling is not None, message)
+            yield Rule("coupling", has_coupling, message)
+        # the shaft line
         if self.shaft is not None:
-            message = "'coupling' is a shaft line of two masses, and 'shaft' another one; leave one of them out"
-            yield Rule("coupling", self.coupling is not None, message)
+            message = (
+                "'coupling' is a shaft line of two masses, and 'shaft' another one; "
+                "leave one of them out"
+            )
+            yield Rule("coupling", has_coupling, message)
             inertia = self.flywheel.inertia if self.flywheel else None
-            without = any(mass.flywheel for mass in self.shaft.masses) and not (
-                inertia is not None and np.all(inertia)
-            )
-            yield Rule(
-                "shaft",
-                without,
-                "the shaft line has a 'flywheel'; give the machine one with its 'inertia'",
-            )
+            has_inertia = inertia is not None and bool(np.all(inertia))
+            has_flywheel = any(mass.flywheel for mass in self.shaft.masses)
+            message = "the shaft line has a 'flywheel'; give the machine one with its 'inertia'"
+            yield Rule("shaft", has_flywheel and not has_inertia, message)
 
     def _name_rules(self) -> Iterator[Rule]:
         """Yield the rules of the names of cylinders, and of those in limits and expectations."""
         names = [cylinder.name for cylinder in self.cylinders]
         for index, name in enumerate(names):
-            place = ("cylinders", index, "name")
-            yield Rule(place, name in names[:index], f"two cylinders are called '{name}'")
-            whole = (
+            path = ("cylinders", index, "name")
+            yield Rule(path, name in names[:index], f"two cylinders are called '{name}'")
+            message = (
                 f"'{MACHINE}' means the whole machine in 'limits' and 'expect'; give another name"
             )
-            yield Rule(place, name == MACHINE, whole)
-        cases = [case.name for case in self.cases]
-        for index, name in enumerate(cases):
-            yield Rule(
-                ("cases", index, "name"), name in cases[:index], f"two cases are called '{name}'"
-            )
-        pistons = (name for cylinder in self.cylinders for name in self.piston_names(cylinder))
-        several = self.crankshaft is not None and len(self.cylinders) > 1
-        throws = (
-            [f"throw {number}" for number in range(1, len(self.cylinders) + 1)] if several else []
-        )
-        scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons, *throws)))
+            yield Rule(path, name == MACHINE, message)
+        case_names = [case.name for case in self.cases]
+        for index, name in enumerate(case_names):
+            path = ("cases", index, "name")
+            yield Rule(path, name in case_names[:index], f"two cases are called '{name}'")
+        # the prefixes of limits and expectations
+        scopes = self._scopes()
         for key, figures in (("limits", self.limits), ("expect", self.expect)):
             for id, figure in figures:
-                if (scope := scoped(id)[0]) and scope not in scopes:
-                    hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
-                    written = (figure.name if isinstance(figure, (Bound, Expected)) else "") or id
-                    message = f"no cylinder is called '{text_in_one_line(scope)}'{hint}"
-                    yield Rule((key, written), True, message, at_key=True)
+                scope, _ = scoped(id)
+                if not scope or scope in scopes:
+                    continue
+                hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
+                message = f"no cylinder is called '{text_in_one_line(scope)}'{hint}"
+                written = figure.name if isinstance(figure, (Bound, Expected)) else ""
+                yield Rule((key, written or id), True, message, at_key=True)
+
+    def _scopes(self) -> tuple[str, ...]:
+        """Return what limits and expectations may be for: the machine, its cylinders, pistons and throws."""
+        scopes = [MACHINE]
+        scopes += [cylinder.name for cylinder in self.cylinders]
+        for cylinder in self.cylinders:
+            scopes += self.piston_names(cylinder)
+        if self.crankshaft is not None and len(self.cylinders) > 1:
+            scopes += [f"throw {number}" for number in range(1, len(self.cylinders) + 1)]
+        return tuple(dict.fromkeys(scopes))
 
     def cycle_of(self, cylinder: Cylinder) -> str:
         """Return the working cycle of a cylinder: its own, or that of the machine."""
@@ -468,12 +493,15 @@ class Machine(Record):
         With several cylinders the name of the cylinder comes first, `cylinder 1.pump`; equal names are numbered.
         """
         names = [piston.name for piston in cylinder.pistons if piston.indicator]
-        own = [
-            f"{one} {names[: n + 1].count(one)}" if one in names[:n] else one
-            for n, one in enumerate(names)
-        ]
-        scope = f"{cylinder.name}." if len(self.cylinders) > 1 else ""
-        return tuple(f"{scope}{one}" for one in own) if len(own) > 1 else ()
+        if len(names) < 2:
+            return ()
+        prefix = f"{cylinder.name}." if len(self.cylinders) > 1 else ""
+        numbered = []
+        for index, name in enumerate(names):
+            count = names[: index + 1].count(name)
+            number = f" {count}" if count > 1 else ""
+            numbered.append(f"{prefix}{name}{number}")
+        return tuple(numbered)
 
     @property
     def _common_cycle(self) -> str:
@@ -488,26 +516,28 @@ class Machine(Record):
     @property
     def chambers(self) -> list[Chamber]:
         """What the indicators of all pistons show."""
-        return [
-            chamber
-            for cylinder in self.cylinders
-            for piston in cylinder.pistons
-            for chamber in piston.chambers.values()
-        ]
+        chambers: list[Chamber] = []
+        for cylinder in self.cylinders:
+            for piston in cylinder.pistons:
+                chambers += piston.chambers.values()
+        return chambers
 
     @property
     def trace_files(self) -> tuple[str, ...]:
         """The files that the traces of the machine, or its effort, were read from."""
-        return tuple(
-            dict.fromkeys(chain(*(one.files for one in (*self.chambers, self.effort) if one)))
-        )
+        files: list[str] = []
+        for chamber in self.chambers:
+            files += chamber.files
+        if self.effort:
+            files += self.effort.files
+        return tuple(dict.fromkeys(files))
 
     def inclination_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""
         inclination = cylinder.inclination
-        return (
-            inclination if inclination is None or self.rotation != "under" else 180.0 - inclination
-        )
+        if inclination is None or self.rotation != "under":
+            return inclination
+        return 180.0 - inclination
 
     @property
     def strength_obstacle(self) -> str:
@@ -519,9 +549,16 @@ class Machine(Record):
             return (
                 "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
             )
-        for mechanism in (cylinder.mechanism for cylinder in self.cylinders):
+        has_pressure = False
+        for cylinder in self.cylinders:
+            mechanism = cylinder.mechanism
             if mechanism.quick_return or mechanism.radial(CrankAngle.of(0.0)) is None:
-                return f"the force on the crank pin of a {mechanism.name} is not known; give a slider-crank"
-        if not any(piston.indicator for cylinder in self.cylinders for piston in cylinder.pistons):
+                return (
+                    f"the force on the crank pin of a {mechanism.name} is not known; "
+                    "give a slider-crank"
+                )
+            if any(piston.indicator for piston in cylinder.pistons):
+                has_pressure = True
+        if not has_pressure:
             return "no pressure loads the crankshaft; give 'bore' and 'indicator'"
         return ""

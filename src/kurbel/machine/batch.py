@@ -16,8 +16,8 @@ R = TypeVar("R")
 
 def values_of(record: Any) -> dict[str, Any]:
     """Return the values of a record by the names of its fields."""
-    known = vars(record)
-    return {field.name: known[field.name] for field in fields(record)}
+    attributes = vars(record)
+    return {field.name: attributes[field.name] for field in fields(record)}
 
 
 def varies(value: object) -> bool:
@@ -28,41 +28,43 @@ def varies(value: object) -> bool:
         return any(map(varies, value))
     if isinstance(value, Indivisible) or not is_dataclass(value):
         return False
-    known = vars(value)
-    if "_varied" not in known:
-        known["_varied"] = tuple(name for name, one in values_of(value).items() if varies(one))
-    return bool(known["_varied"])
+    attributes = vars(value)
+    if "_varied" not in attributes:
+        names = [name for name, attribute in values_of(value).items() if varies(attribute)]
+        attributes["_varied"] = tuple(names)
+    return bool(attributes["_varied"])
 
 
 def changed(
-    record: Any, change: Callable[[Array], object], known: dict[int, object] | None = None
+    record: Any, change: Callable[[Array], object], copies: dict[int, object] | None = None
 ) -> Any:
     """Return a record with every array (machines,) changed, without checking its rules again.
 
-    Objects without arrays are not copied, and an object in several places stays one object; known: changed objects by
+    Objects without arrays are not copied, and an object in several places stays one object; copies: changed objects by
     id, for the recursion.
     """
     if isinstance(record, np.ndarray):
         return change(record)
     if not varies(record):
         return record
-    known = {} if known is None else known
-    if id(record) not in known:
-        if isinstance(record, tuple):
-            parts = [changed(one, change, known) for one in record]
-            made = type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
-        else:
-            held = vars(record)
-            made = object.__new__(type(record))
-            vars(made).update(values_of(record))
-            vars(made).update(
-                {name: changed(held[name], change, known) for name in held["_varied"]}
-            )
-        known[id(record)] = made
-    return known[id(record)]
+    if copies is None:
+        copies = {}
+    if id(record) in copies:
+        return copies[id(record)]
+    if isinstance(record, tuple):
+        items = [changed(item, change, copies) for item in record]
+        is_named_tuple = hasattr(record, "_fields")
+        copy = type(record)(*items) if is_named_tuple else tuple(items)
+    else:
+        copy = object.__new__(type(record))
+        vars(copy).update(values_of(record))
+        for name in vars(record)["_varied"]:
+            vars(copy)[name] = changed(vars(record)[name], change, copies)
+    copies[id(record)] = copy
+    return copy
 
 
 def taken(record: R, index: Indices) -> R:
     """Return a record of many machines with the numbers of these, of the shape of the index."""
-    found: R = changed(record, lambda numbers: numbers[index])
-    return found
+    result: R = changed(record, lambda numbers: numbers[index])
+    return result

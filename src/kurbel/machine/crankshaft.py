@@ -89,62 +89,74 @@ class Crankshaft(Record):
     )
 
     def rules(self) -> Iterator[Rule]:
-        beside = "beside the web" if self.overhung else "between the webs"
-        numbers = {
-            "end": self._web_end,
-            "span": self.span,
-            "gap": 2 * self.web_distance - self.web_thickness,
-        }
-        yield Rule(
-            "web_thickness",
-            self.web_thickness >= self.web_width,
-            "{web_thickness} is not less than the width ({web_width}); the thickness lies along the shaft",
-        )
-        yield Rule(
-            "web_distance",
-            self.web_distance <= self.web_thickness / 2,
-            f"{{web_distance}} leaves no pin {beside}; it must be more than half the thickness ({{web_thickness}})",
-        )
-        for name, place in (("a", self.a), ("b", self.b)):
-            inside = "puts the bearing inside the web ({end:length} from the pin); measure to the middle of the bearing"
-            yield Rule(name, place <= self._web_end, f"{{{name}}} {inside}", numbers)
-        beyond: Truth = self.flywheel_position <= -self.span
-        if self.overhung:
-            before = self.b <= self.a
-            yield Rule(
-                "b", before, "{b} puts B before bearing A ({a}); an overhung pin lies beyond A"
-            )
-            beyond = beyond & ~np.asarray(before)
-        yield Rule(
-            "flywheel_position",
-            beyond,
-            "{flywheel_position} lies beyond bearing A; A is the bearing away from the flywheel, {span:length} from B",
-            numbers,
-        )
-        if not self.overhung:
-            room = self._web_end - self.b
-            yield Rule(
-                "flywheel_position",
-                ~np.asarray(beyond) & (self.flywheel_position <= room) & (room < 0),
-                "{flywheel_position} is not between web and bearing B, which leave {room:length}; "
-                "B is the bearing next to the flywheel",
-                {"room": -room},
-            )
-        yield Rule(
-            "pin_length",
-            (self.pin_length > _ROUNDED * numbers["gap"]) & (numbers["gap"] > 0),
-            f"{{pin_length}} does not fit {beside}, which leave{'s' * self.overhung} {{gap:length}}: twice "
-            "web_distance less web_thickness",
-            numbers,
-        )
-        if self.rod_spacing is not None:
-            too_far = self.rod_spacing >= self.pin_length
-            yield Rule(
-                "rod_spacing",
-                too_far,
-                "{rod_spacing} is not less than the length of the pin ({pin_length})",
-            )
+        yield from self._web_rules()
+        yield from self._bearing_rules()
+        yield from self._pin_rules()
         yield from self._journal_rules()
+
+    def _web_rules(self) -> Iterator[Rule]:
+        """Yield the rules on the dimensions of a web."""
+        message = (
+            "{web_thickness} is not less than the width ({web_width}); "
+            "the thickness lies along the shaft"
+        )
+        yield Rule("web_thickness", self.web_thickness >= self.web_width, message)
+        message = (
+            f"{{web_distance}} leaves no pin {self._beside_webs}; "
+            "it must be more than half the thickness ({web_thickness})"
+        )
+        yield Rule("web_distance", self.web_distance <= self.web_thickness / 2, message)
+
+    @property
+    def _beside_webs(self) -> str:
+        """Where the pin is, for messages."""
+        return "beside the web" if self.overhung else "between the webs"
+
+    def _bearing_rules(self) -> Iterator[Rule]:
+        """Yield the rules on the places of bearings and flywheel along the shaft."""
+        # the bearings are outside of the webs
+        numbers = {"end": self._web_end}
+        message = (
+            "puts the bearing inside the web ({end:length} from the pin); "
+            "measure to the middle of the bearing"
+        )
+        yield Rule("a", self.a <= self._web_end, f"{{a}} {message}", numbers)
+        yield Rule("b", self.b <= self._web_end, f"{{b}} {message}", numbers)
+        # the flywheel is on the side of B
+        is_beyond_A: Truth = self.flywheel_position <= -self.span
+        if self.overhung:
+            is_B_before_A = self.b <= self.a
+            message = "{b} puts B before bearing A ({a}); an overhung pin lies beyond A"
+            yield Rule("b", is_B_before_A, message)
+            is_beyond_A = is_beyond_A & ~np.asarray(is_B_before_A)
+        message = (
+            "{flywheel_position} lies beyond bearing A; "
+            "A is the bearing away from the flywheel, {span:length} from B"
+        )
+        yield Rule("flywheel_position", is_beyond_A, message, {"span": self.span})
+        if not self.overhung:
+            room = self.b - self._web_end
+            is_in_throw = (self.flywheel_position <= -room) & (room > 0)
+            message = (
+                "{flywheel_position} is not between web and bearing B, which leave {room:length}; "
+                "B is the bearing next to the flywheel"
+            )
+            is_broken = is_in_throw & ~np.asarray(is_beyond_A)
+            yield Rule("flywheel_position", is_broken, message, {"room": room})
+
+    def _pin_rules(self) -> Iterator[Rule]:
+        """Yield the rules on the length of the crank pin."""
+        gap = 2 * self.web_distance - self.web_thickness
+        does_not_fit = (self.pin_length > _ROUNDED * gap) & (gap > 0)
+        verb = "leaves" if self.overhung else "leave"
+        message = (
+            f"{{pin_length}} does not fit {self._beside_webs}, which {verb} {{gap:length}}: "
+            "twice web_distance less web_thickness"
+        )
+        yield Rule("pin_length", does_not_fit, message, {"gap": gap})
+        if self.rod_spacing is not None:
+            message = "{rod_spacing} is not less than the length of the pin ({pin_length})"
+            yield Rule("rod_spacing", self.rod_spacing >= self.pin_length, message)
 
     def _journal_rules(self) -> Iterator[Rule]:
         """Yield the rule of the journal in each room, broken where that is the shortest one.
@@ -153,29 +165,26 @@ class Crankshaft(Record):
         """
         if self.journal_length is None:
             return
-        has_flywheel = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(
-            self.flywheel_position, 0
+        has_flywheel = np.asarray(self.flywheel_mass) > 0
+        is_off_B = has_flywheel & np.not_equal(self.flywheel_position, 0)
+        rooms: dict[str, Number] = {"the middle of bearing A and web A": self.a - self._web_end}
+        if self.overhung:
+            rooms["the middle of bearing A and half the way to B"] = self.span / 2
+        else:
+            rooms["the middle of bearing B and web B"] = self.b - self._web_end
+        rooms["the middles of bearing B and flywheel"] = np.where(
+            is_off_B, abs(self.flywheel_position), np.inf
         )
-        rooms: dict[str, Number] = {
-            "the middle of bearing A and web A": self.a - self._web_end,
-            "the middle of bearing B and web B": np.inf
-            if self.overhung
-            else self.b - self._web_end,
-            "the middle of bearing A and half the way to B": self.span / 2
-            if self.overhung
-            else np.inf,
-            "the middles of bearing B and flywheel": np.where(
-                has_flywheel, abs(self.flywheel_position), np.inf
-            ),
-        }
         shortest = functools.reduce(np.minimum, rooms.values())
-        for what, room in rooms.items():
-            sentence = (
-                f"half of {{journal_length}} does not fit between {what}, which leave {{room:length}}; "
+        for between, room in rooms.items():
+            does_not_fit = (self.journal_length / 2 > _ROUNDED * room) & (room > 0)
+            message = (
+                f"half of {{journal_length}} does not fit between {between}, "
+                "which leave {room:length}; "
                 "'a', 'b' and 'flywheel_position' go to the middle of a bearing"
             )
-            short = (self.journal_length / 2 > _ROUNDED * room) & (room > 0) & (room == shortest)
-            yield Rule("journal_length", short, sentence, {"room": room})
+            is_broken = does_not_fit & (room == shortest)
+            yield Rule("journal_length", is_broken, message, {"room": room})
 
     @property
     def place_A(self) -> float:
@@ -218,7 +227,7 @@ class _Weight(Record):
         least=0,
         instead="product",
         needs="radius",
-        gives=lambda given: {"product": given["mass"] * given["radius"]},
+        gives=lambda values: {"product": values["mass"] * values["radius"]},
     )
     _radius = alternative(
         "length",
@@ -270,14 +279,12 @@ class SharedCounterweights(Record):
 
     def rules(self) -> Iterator[Rule]:
         count = len(self.planes)
-        same = count == 2 and self.planes[0] == self.planes[1]
-        message = "give two different places, such as '[-750 mm, 750 mm]', or leave it out"
-        different = count if count != 2 else 1
-        yield Rule(
-            "planes",
-            count not in (0, 2) or same,
-            f"{count} of them, {different} different; {message}",
-        )
+        advice = "give two different places, such as '[-750 mm, 750 mm]', or leave it out"
+        if count == 2:
+            are_equal = self.planes[0] == self.planes[1]
+            yield Rule("planes", are_equal, f"2 of them, 1 different; {advice}")
+        elif count > 0:
+            yield Rule("planes", True, f"{count} of them, {count} different; {advice}")
 
 
 class BalanceShaft(_Weight):
@@ -296,7 +303,7 @@ class BalanceShaft(_Weight):
         ),
         "Sense of rotation: with the crank or against it",
         required=True,
-        gives=lambda given: {"against": given["sense"] == "against"},
+        gives=lambda values: {"against": values["sense"] == "against"},
     )
     order: int = field(int, "Its turns per turn of the crank", "n", least=1, most=8, example="2")
     against: bool = False

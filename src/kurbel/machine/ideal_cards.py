@@ -34,8 +34,8 @@ def _exponent(text: str, absent: str, default: float | None = None, **more: Any)
 
 def _order(key: str, high: Number, low_name: str, low: Number) -> Rule:
     """Return the rule that the pressure under `key` is larger than the other one."""
-    sentence = f"{{high:pressure}} is not above the {low_name} pressure ({{low:pressure}})"
-    return Rule(key, high <= low, sentence, {"high": high, "low": low})
+    message = f"{{high:pressure}} is not above the {low_name} pressure ({{low:pressure}})"
+    return Rule(key, high <= low, message, {"high": high, "low": low})
 
 
 def after_polytrope(pressure: Number, volume: Number, next_volume: Number, exponent: Number) -> Any:
@@ -44,9 +44,11 @@ def after_polytrope(pressure: Number, volume: Number, next_volume: Number, expon
     >>> after_polytrope(1.0, 8.0, 1.0, 1.0)
     8.0
     """
-    if any(map(np.ndim, (volume, next_volume, exponent))):
-        power = np.exp(exponent * np.log(volume / next_volume))
-        return np.where(np.equal(exponent, 1), pressure * volume / next_volume, power * pressure)
+    has_arrays = any(map(np.ndim, (volume, next_volume, exponent)))
+    if has_arrays:
+        hyperbola = pressure * volume / next_volume
+        ratio = np.exp(exponent * np.log(volume / next_volume))
+        return np.where(np.equal(exponent, 1), hyperbola, ratio * pressure)
     if exponent == 1:
         return pressure * volume / next_volume
     return math.exp(exponent * math.log(volume / next_volume)) * pressure
@@ -56,12 +58,16 @@ def _above_vacuum(lift: Number, **pressures: Number | None) -> Iterator[Rule]:
     """Yield the rule that pressures are above the perfect vacuum; lift makes them absolute."""
     for name, pressure in pressures.items():
         if pressure is not None:
-            sentence = f"{name}: {{pressure:pressure}} is not above the vacuum, as p V^n needs"
-            yield Rule((), pressure + lift <= 0, sentence, {"pressure": pressure})
+            message = f"{name}: {{pressure:pressure}} is not above the vacuum, as p V^n needs"
+            yield Rule((), pressure + lift <= 0, message, {"pressure": pressure})
 
 
 def _diagram_factor() -> FieldValue:
-    text = "p_i of the true card over that of the theoretical one, which is drawn lower about the back pressure"
+    """Return the field of the diagram factor of a card."""
+    text = (
+        "p_i of the true card over that of the theoretical one, "
+        "which is drawn lower about the back pressure"
+    )
     return field("ratio", text, "κ_d", default=1.0, above=0, most=1, example="0.85")
 
 
@@ -71,13 +77,16 @@ def _factor_notes(factor: float) -> tuple[str, ...]:
         return ()
     most = f"{100 * (1 - factor):.3g} %"
     return (
-        f"diagram_factor {factor:g}: a real card loses at its corners and keeps its peak, here up to {most} low",
+        f"diagram_factor {factor:g}: a real card loses at its corners and keeps its peak, "
+        f"here up to {most} low",
     )
 
 
 def _only_two_stroke(card: Record, cycle: str) -> Rule:
-    two = f"a {type(card).__name__.lower()} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
-    return Rule((), cycle != "two-stroke", two)
+    """Return the rule that a card is of no other cycle."""
+    kind = type(card).__name__.lower()
+    message = f"a {kind} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
+    return Rule((), cycle != "two-stroke", message)
 
 
 class Steam(ChamberCard, Record):
@@ -141,15 +150,21 @@ class Steam(ChamberCard, Record):
     def rules_of_events(self, valve_compresses: Truth | None) -> Iterator[Rule]:
         """Yield events that are missing without a valve, or given beside one; of the clearance the rule of the card."""
         if valve_compresses is None:
-            missing = "'cut_off' is missing; give it here, or the cylinder a 'valve', which sets all events"
-            yield Rule("steam", self.cut_off is None, missing)
+            message = (
+                "'cut_off' is missing; "
+                "give it here, or the cylinder a 'valve', which sets all events"
+            )
+            yield Rule("steam", self.cut_off is None, message)
             return
-        twice = "the 'valve' sets cut_off, release, compression and lead; leave them out"
+        message = "the 'valve' sets cut_off, release, compression and lead; leave them out"
         for key in self.events:
-            yield Rule(("steam", key), True, twice, at_key=True)
-        message = "the valve shuts the exhaust before the dead centre, and compression needs a final volume"
-        no_volume = (self.clearance == 0) & valve_compresses
-        yield Rule(("steam", "clearance"), no_volume, f"{message}; give 'clearance'")
+            yield Rule(("steam", key), True, message, at_key=True)
+        lacks_volume = (self.clearance == 0) & valve_compresses
+        message = (
+            "the valve shuts the exhaust before the dead centre, "
+            "and compression needs a final volume; give 'clearance'"
+        )
+        yield Rule(("steam", "clearance"), lacks_volume, message)
 
     @property
     def back_pressure(self) -> float:
@@ -162,13 +177,18 @@ class Steam(ChamberCard, Record):
         return _factor_notes(self.diagram_factor)
 
     def rules(self) -> Iterator[Rule]:
-        early = "{lead} is not less than the compression ({compression}), in which admission opens"
-        yield Rule("lead", (self.lead > 0) & (self.lead >= self.compression), early)
+        is_too_early = (self.lead > 0) & (self.lead >= self.compression)
+        message = (
+            "{lead} is not less than the compression ({compression}), in which admission opens"
+        )
+        yield Rule("lead", is_too_early, message)
         yield _order("admission", self.admission, "exhaust", self.exhaust)
-        late = "the exhaust opens at {release}, before the cut-off at {cut_off}"
-        yield Rule("release", self.cut_off is not None and self.release < self.cut_off, late)
+        if self.cut_off is not None:
+            message = "the exhaust opens at {release}, before the cut-off at {cut_off}"
+            yield Rule("release", self.release < self.cut_off, message)
+        lacks_volume = (self.clearance == 0) & (self.compression != 0)
         message = "compression needs a final volume; give 'clearance', or leave 'compression' out"
-        yield Rule("clearance", (self.clearance == 0) & (self.compression != 0), message)
+        yield Rule("clearance", lacks_volume, message)
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield the rules on the cycle of the machine, and on absolute pressures."""
@@ -217,15 +237,24 @@ class Compressor(ChamberCard, Record):
         """Yield what does not fit the cycle or the absolute pressures; also a delivery that is never reached."""
         yield _only_two_stroke(self, cycle)
         yield from _above_vacuum(lift, suction=self.suction, delivery=self.delivery)
+        # the pressures at the dead centre from which compression and expansion span the whole stroke
         c = self.clearance
+        suction = self.suction + lift
         with np.errstate(all="ignore"):
-            enclosed = np.where(np.equal(c, 0), np.nan, c)
-            top = after_polytrope(self.suction + lift, 1 + c, enclosed, self.exponent) - lift
-            left = after_polytrope(self.suction + lift, 1 + c, enclosed, self.of_expansion) - lift
-        nothing = "delivery: the piston compresses to {top:pressure} only; such a compressor delivers nothing"
-        yield Rule((), self.delivery >= top, nothing, {"top": top})
-        full = "expansion_exponent: what is left in the clearance fills the whole stroke; nothing is drawn in"
-        yield Rule((), (self.delivery < top) & (self.delivery >= left), full)
+            clearance = np.where(np.equal(c, 0), np.nan, c)
+            top = after_polytrope(suction, 1 + c, clearance, self.exponent) - lift
+            full = after_polytrope(suction, 1 + c, clearance, self.of_expansion) - lift
+        message = (
+            "delivery: the piston compresses to {top:pressure} only; "
+            "such a compressor delivers nothing"
+        )
+        yield Rule((), self.delivery >= top, message, {"top": top})
+        draws_nothing = (self.delivery < top) & (self.delivery >= full)
+        message = (
+            "expansion_exponent: what is left in the clearance fills the whole stroke; "
+            "nothing is drawn in"
+        )
+        yield Rule((), draws_nothing, message)
 
 
 class _Engine(ChamberCard, Record):
@@ -254,7 +283,7 @@ class _Engine(ChamberCard, Record):
         most=1e6,
         required=True,
         example="8",
-        gives=lambda given: {"clearance": 1 / (given["compression_ratio"] - 1)},
+        gives=lambda values: {"clearance": 1 / (values["compression_ratio"] - 1)},
     )
     clearance: float = field(
         CLEARANCE, f"{_CLEARANCE}; or give `compression_ratio`", "c", instead="compression_ratio"
@@ -266,8 +295,8 @@ class _Engine(ChamberCard, Record):
         "Exponent of the compression",
         "1.4, air",
         AIR_EXPONENT,
-        gives=lambda given: {
-            "expansion_exponent": given.get("expansion_exponent", given["exponent"])
+        gives=lambda values: {
+            "expansion_exponent": values.get("expansion_exponent", values["exponent"])
         },
     )
     expansion_exponent: float = _exponent(
@@ -301,20 +330,22 @@ class _Engine(ChamberCard, Record):
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a peak below the compression."""
-        two = "a two-stroke engine has no exhaust stroke; leave it out, or write 'cycle: four-stroke' at the top"
-        yield Rule((), self.exhaust is not None and cycle != "four-stroke", f"exhaust: {two}")
+        has_no_exhaust_stroke = cycle != "four-stroke"
+        message = (
+            "exhaust: a two-stroke engine has no exhaust stroke; "
+            "leave it out, or write 'cycle: four-stroke' at the top"
+        )
+        yield Rule((), has_no_exhaust_stroke and self.exhaust is not None, message)
         yield from _above_vacuum(lift, intake=self.intake, exhaust=self.exhaust)
-        if self.peak is not None:
-            end = (
-                after_polytrope(
-                    self.intake + lift, 1 + self.clearance, self.clearance, self.exponent
-                )
-                - lift
-            )
-            below = "peak: {peak:pressure} is below the end of the compression ({end:pressure})"
-            # as much as rounding of the clearance may take from a peak that is just that pressure
-            low = self.peak < end - 1e-9 * abs(end)
-            yield Rule((), low, below, {"peak": self.peak, "end": end})
+        if self.peak is None:
+            return
+        # the end of the compression
+        c = self.clearance
+        end = after_polytrope(self.intake + lift, 1 + c, c, self.exponent) - lift
+        # as much as rounding of the clearance may take from a peak that is just that pressure
+        is_below = self.peak < end - 1e-9 * abs(end)
+        message = "peak: {peak:pressure} is below the end of the compression ({end:pressure})"
+        yield Rule((), is_below, message, {"peak": self.peak, "end": end})
 
 
 class Otto(_Engine):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
+from itertools import chain
 from typing import TYPE_CHECKING, Any, ClassVar, Union
 
 import numpy as np
@@ -52,18 +53,18 @@ class Rectangle(ChamberCard):
         """That such a card has the correct work, but not the true pressures."""
         if not self.mean:
             return ()
+        mean = show(self.mean, "pressure")
         return (
-            f"a rectangular card of the mean pressure {show(self.mean, 'pressure')} replaces the true one: work and "
-            "power are correct, forces over the angle are not",
+            f"a rectangular card of the mean pressure {mean} replaces the true one: "
+            "work and power are correct, forces over the angle are not",
         )
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield the rule that no pressure is below the vacuum; lift: added to make pressures absolute, in Pa."""
         if self.level is not None:
-            below = "{level:pressure} is below the vacuum, which is at {vacuum:pressure}"
-            yield Rule(
-                (), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift}
-            )
+            message = "{level:pressure} is below the vacuum, which is at {vacuum:pressure}"
+            numbers = {"level": self.level, "vacuum": 0.0 - lift}
+            yield Rule((), self.level + lift < 0, message, numbers)
 
 
 class Drawn(Record):
@@ -174,47 +175,63 @@ class Card(ChamberCard, Record):
         drawn: Drawn | None = None,
         interpolate: str = "linear",
         clearance: float | None = None,
-        **given: Any,
+        **lines: Any,
     ) -> Card | Rectangle:
-        """Return the card that these keys of a machine file describe; raises RuleError with every fault."""
-        by_planimeter = {name: given.pop(name) for name in ("area", "mean_height") if name in given}
-        if drawn and by_planimeter:
-            own = "the lines have an area of their own; leave out the one by planimeter"
-            refuse(*(Fault((name,), own) for name in given))
-            height = by_planimeter.get("mean_height", by_planimeter.get("area", 0.0) / drawn.length)
-            return Rectangle(mean=height / drawn.spring)  # p_i = a/(l · spring)
-        paper, factor, whole = drawn.scales if drawn else ("", unit or (1, 1), 1.0)
-        cycle = "four-stroke" if {"intake", "exhaust"} & given.keys() else "two-stroke"
-        missing = [name for name in STROKES[cycle] if name not in given]
-        faults = [
-            Fault((), f"the '{name}' line of the {cycle} card is missing") for name in missing
-        ]
+        """Return the card that these keys of a machine file describe; raises RuleError with every fault.
+
+        lines: points by the name of the line, and what a planimeter measured.
+        """
+        planimeter = {name: lines.pop(name) for name in ("area", "mean_height") if name in lines}
+        if drawn and planimeter:
+            message = "the lines have an area of their own; leave out the one by planimeter"
+            refuse(*(Fault((name,), message) for name in lines))
+            # p_i = a/(l · spring)
+            height = planimeter.get("mean_height")
+            if height is None:
+                height = planimeter["area"] / drawn.length
+            return Rectangle(mean=height / drawn.spring)
+
+        # missing or faulty lines
+        paper_unit, factor, stroke = drawn.scales if drawn else ("", unit or (1, 1), 1.0)
+        cycle = "four-stroke" if {"intake", "exhaust"} & lines.keys() else "two-stroke"
+        faults = []
+        for name in STROKES[cycle]:
+            if name not in lines:
+                faults.append(Fault((), f"the '{name}' line of the {cycle} card is missing"))
         if interpolate == "polytropic" and not clearance:
-            needed = "'polytropic' needs the 'clearance' volume over the stroke volume, more than 0"
-            faults.append(Fault(("interpolate",), needed))
-        for name, points in given.items():
-            large = size_faults(points, factor, "pressure")
-            faults += (fault.below((name,)) for fault in _line_faults(points, whole, paper) + large)
+            message = (
+                "'polytropic' needs the 'clearance' volume over the stroke volume, more than 0"
+            )
+            faults.append(Fault(("interpolate",), message))
+        for name, points in lines.items():
+            line_faults = _line_faults(points, stroke, paper_unit)
+            line_faults += size_faults(points, factor, "pressure")
+            faults += (fault.below((name,)) for fault in line_faults)
         refuse(*faults)
-        lines, notes = [], []
+
+        # the lines, in Pa over fractions of the stroke
+        card_lines = []
+        notes = []
         for start, name in zip((0, 1, 0, 1), STROKES[cycle]):
-            points = given[name]
-            ordered = points if (points[0][0] <= points[-1][0]) == (start == 0) else points[::-1]
-            kept = [point for before, point in zip([None, *ordered], ordered) if point != before]
-            if len(kept) < len(points):
+            points = lines[name]
+            different = _in_order(points, start)
+            if len(different) < len(points):
                 notes.append(f"{name}: a point given twice counts once")
-            pressures = tuple(p * factor[0] / factor[1] for _, p in kept)
-            lines.append(CardLine(name, tuple(x / whole for x, _ in kept), pressures, start))
-        return cls(tuple(lines), interpolate, clearance, tuple(notes), drawn is not None)
+            multiplier, divisor = factor
+            fractions = tuple(x / stroke for x, _ in different)
+            pressures = tuple(p * multiplier / divisor for _, p in different)
+            card_lines.append(CardLine(name, fractions, pressures, start))
+        return cls(tuple(card_lines), interpolate, clearance, tuple(notes), drawn is not None)
 
     @property
     def flat(self) -> bool:
         """Whether each line is one pressure, as those of an ideal pump."""
-        return all(
-            np.ndim(p) == 0 and p == line.pressures[0]
-            for line in self.lines
-            for p in line.pressures
-        )
+        for line in self.lines:
+            for p in line.pressures:
+                is_same = np.ndim(p) == 0 and p == line.pressures[0]
+                if not is_same:
+                    return False
+        return True
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -223,45 +240,67 @@ class Card(ChamberCard, Record):
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, or what no polytropic line can be drawn through."""
-        wanted = STROKES[cycle]
-        lines = f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
-        yield Rule((), len(self.lines) != len(wanted), lines)
-        lowest = reduce(
-            np.minimum, (pressure for line in self.lines for pressure in line.pressures)
-        )
+        # the lines of the cycle
+        names = STROKES[cycle]
+        count = len(self.lines)
+        message = f"a {cycle} cycle needs the lines {', '.join(names)}; this card has {count} lines"
+        yield Rule((), count != len(names), message)
+        # the vacuum
+        lowest = reduce(np.minimum, chain(*(line.pressures for line in self.lines)))
         numbers = {"lowest": lowest, "vacuum": 0.0 - lift}
         if self.interpolate == "polytropic":
-            above = "{lowest:pressure} is not above the vacuum, as p V^n needs; write 'interpolate: linear'"
-            yield Rule((), lowest + lift <= 0, above, numbers)
+            message = (
+                "{lowest:pressure} is not above the vacuum, as p V^n needs; "
+                "write 'interpolate: linear'"
+            )
+            yield Rule((), lowest + lift <= 0, message, numbers)
         else:
-            below = "{lowest:pressure} is below the vacuum, which is at {vacuum:pressure}"
-            yield Rule((), lowest + lift < 0, below, numbers)
+            message = "{lowest:pressure} is below the vacuum, which is at {vacuum:pressure}"
+            yield Rule((), lowest + lift < 0, message, numbers)
 
 
-def _line_faults(points: list[DiagramPoint], whole: float, unit: str) -> list[Fault]:
+def _in_order(points: list[DiagramPoint], start: int) -> list[DiagramPoint]:
+    """Return the points of a line in the order of the process, equal neighbours once; start: 0 or 1, where it begins."""
+    begins_at_zero = points[0][0] <= points[-1][0]
+    if begins_at_zero != (start == 0):
+        points = points[::-1]
+    different = points[:1]
+    for point in points[1:]:
+        if point != different[-1]:
+            different.append(point)
+    return different
+
+
+def _line_faults(points: list[DiagramPoint], stroke: float, unit: str) -> list[Fault]:
     """Return the first fault of a line that does not run once through the whole stroke.
 
-    whole: the stroke in a unit of the paper, '' for fractions of it.
+    stroke: its length in a unit of the paper; 1 with '' for fractions of it.
     """
-    beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]
+    # points beyond the stroke
+    beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= stroke]
     if beyond:
-        x = points[beyond[0]][0]
-        message = f"{x:g} {unit} is not on the card, which is {whole:g} {unit} long; its own dead centre is at 0"
-        if not unit:
-            hint = (
-                f"; write {x / 100:g} here if the line is in percent"
-                if 1 < x <= 100 and len(beyond) > 1
-                else ""
+        x, _ = points[beyond[0]]
+        if unit:
+            message = (
+                f"{x:g} {unit} is not on the card, which is {stroke:g} {unit} long; "
+                "its own dead centre is at 0"
             )
+        else:
+            is_percent = 1 < x <= 100 and len(beyond) > 1
+            hint = f"; write {x / 100:g} here if the line is in percent" if is_percent else ""
             message = f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
         return [Fault((beyond[0],), message)]
+    # the ends of the line
     low, high = sorted((points[0][0], points[-1][0]))
-    of = unit and f" {unit}"
-    if (low, high) == (0.0, whole):
-        return order_faults(points, f"{{:g}}{of}" if unit else "fraction {:g}")
-    own = "0 is this chamber's own dead centre, where it is smallest"
-    runs = f"it runs from {low:g} to {high:g}{of}; {own}"
-    return [Fault((), f"the line must reach from 0 to {whole:g}{of}; {runs}")]
+    of_unit = f" {unit}" if unit else ""
+    if (low, high) == (0.0, stroke):
+        return order_faults(points, f"{{:g}}{of_unit}" if unit else "fraction {:g}")
+    message = (
+        f"the line must reach from 0 to {stroke:g}{of_unit}; "
+        f"it runs from {low:g} to {high:g}{of_unit}; "
+        "0 is this chamber's own dead centre, where it is smallest"
+    )
+    return [Fault((), message)]
 
 
 class Constant(Record):
@@ -273,12 +312,9 @@ class Constant(Record):
     @classmethod
     def of_keys(cls, expansion: float, compression: float) -> Card:
         """Return the card with two horizontal lines."""
-        return Card(
-            (
-                CardLine("expansion", (0.0, 1.0), (expansion, expansion), 0),
-                CardLine("compression", (1.0, 0.0), (compression, compression), 1),
-            )
-        )
+        suction = CardLine("expansion", (0.0, 1.0), (expansion, expansion), 0)
+        delivery = CardLine("compression", (1.0, 0.0), (compression, compression), 1)
+        return Card((suction, delivery))
 
 
 def _measured() -> type[Measured]:
@@ -338,8 +374,14 @@ Chamber = Union[Rectangle, Card, "IdealCard", "Trace"]
 """The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
 
 
-def _mirrored(head_end: Chamber | None) -> dict[str, object]:
-    """Return the crank end that has the card of the head end, its valves at work."""
+def _mirrored(values: ValuesByKey) -> dict[str, object]:
+    """Return the crank end that has the card of the head end, its valves at work; nothing if it is not `mirrored`.
+
+    The fractions of each chamber count from its own dead centre, so that it is the same card.
+    """
+    if values["crank_end"] != "mirrored":
+        return {}
+    head_end = values.get("head_end")
     return {"crank_end": None if head_end is None else head_end.loaded()}
 
 
@@ -354,7 +396,7 @@ class Indicator(Record):
         "Reference of the pressures, also for `p_head`, `p_crank` and `p_max` where they are printed, requested or "
         "limited",
         absent="gauge",
-        gives=lambda given: {"absolute": given["pressures"] == "absolute"},
+        gives=lambda values: {"absolute": values["pressures"] == "absolute"},
     )
     head_end: Chamber | None = field(
         OneOf(_ONE_PRESSURE, _CHAMBER),
@@ -366,10 +408,7 @@ class Indicator(Record):
         "Pressure at the crank end, with a card measured from its own (outer) dead centre; or `mirrored`: the card "
         "of the head end",
         absent="open to the ambient",
-        # each chamber's fractions count from its own dead centre, so that it is the same card
-        gives=lambda given: (
-            _mirrored(given.get("head_end")) if given["crank_end"] == "mirrored" else {}
-        ),
+        gives=_mirrored,
     )
     role: str | None = field(
         ("engine", "compressor", "pump", "steam"),
@@ -379,16 +418,18 @@ class Indicator(Record):
     absolute: bool = False
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
-        mirrored = given.get("crank_end") == "mirrored"
-        none = "head_end" not in given and (mirrored or "crank_end" not in given)
-        yield Rule(
-            "crank_end" if mirrored else (),
-            none,
-            "the indicator shows no pressure; give 'head_end'",
-        )
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        # an end without a pressure
+        is_mirrored = values.get("crank_end") == "mirrored"
+        has_crank_end = "crank_end" in values and not is_mirrored
+        is_empty = "head_end" not in values and not has_crank_end
+        message = "the indicator shows no pressure; give 'head_end'"
+        yield Rule("crank_end" if is_mirrored else (), is_empty, message)
+        # drawn cards are gauge
+        if values.get("pressures") != "absolute":
+            return
         for end in ("head_end", "crank_end"):
-            card = given.get(end)
-            drawn = given.get("pressures") == "absolute" and isinstance(card, Card) and card.drawn
+            card = values.get(end)
+            is_drawn = isinstance(card, Card) and card.drawn
             message = "a drawn card counts from the atmospheric line; write 'pressures: gauge'"
-            yield Rule((end, "drawn"), drawn, message)
+            yield Rule((end, "drawn"), is_drawn, message)

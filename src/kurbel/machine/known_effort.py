@@ -64,28 +64,20 @@ class KnownEffort(Columns):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
-        forms = [
-            name
-            for name in ("points", "file", "harmonics", "swing", "coefficient")
-            if name in given
-        ]
-        message = "give one of 'points', 'file' or 'harmonics', or 'swing', or 'coefficient' beside 'mean'"
-        yield Rule((), len(forms) != 1 and forms != ["swing", "coefficient"], message)
-        level = "mean" in given and forms in (["points"], ["file"])
-        yield Rule(
-            "mean",
-            level,
-            f"belongs to harmonics, a swing or a coefficient; '{forms[0] if forms else ''}' has its own",
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        # one of the forms; swing and coefficient together are refused as the same quantity twice
+        forms = [form for form in _FORMS if form in values]
+        is_one_form = len(forms) == 1 or forms == ["swing", "coefficient"]
+        message = (
+            "give one of 'points', 'file' or 'harmonics', "
+            "or 'swing', or 'coefficient' beside 'mean'"
         )
-        bare = "unit" not in given and isinstance(given.get("mean"), InUnit)
-        yield Rule(
-            "mean",
-            bare,
-            f"{given.get('mean', 0.0):g} has no unit; write it with one, such as '500 N m'",
-        )
-        yield harmonics_need_a_unit(given)
-        yield from super().rules_of_keys(given)
+        yield Rule((), not is_one_form, message)
+        # the mean torque
+        if "mean" in values:
+            yield from _rules_of_mean(values, forms)
+        yield harmonics_need_a_unit(values)
+        yield from super().rules_of_keys(values)
 
     @classmethod
     def of_keys(
@@ -107,43 +99,55 @@ class KnownEffort(Columns):
             return Swing(swing, coefficient, None if mean is None else in_unit(mean, unit))
         if file is None:
             return points_of(unit, points or [])
-        up, down = unit
-        layout_of_file = cls.layout(layout)
+        # the samples of a file
+        multiplier, divisor = unit
         samples = samples_of_file(
             file,
-            layout_of_file,
+            cls.layout(layout),
             "torque",
-            lambda torques: torques * up / down,
+            lambda torques: torques * multiplier / divisor,
             most_turns=MOST_TURNS,
         )
         if len(samples.values) > 1:
             lap = samples.angles[-1] - samples.angles[0]
             refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")
         angles, torques = _from_zero(samples, angle_zero)
-        closed = (
-            ("the closing sample is missing; the first one closes the cycle",)
-            if samples.completed
-            else ()
-        )
-        return Effort(
-            tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed)
-        )
+        notes = samples.notes
+        if samples.completed:
+            notes = (*notes, "the closing sample is missing; the first one closes the cycle")
+        return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), notes)
+
+
+_FORMS = ("points", "file", "harmonics", "swing", "coefficient")
+"""Keys of which an effort has one."""
+
+
+def _rules_of_mean(values: ValuesByKey, forms: list[str]) -> Iterator[Rule]:
+    """Yield the rules on a mean torque: what has one, and its unit."""
+    if forms in (["points"], ["file"]):
+        message = f"belongs to harmonics, a swing or a coefficient; '{forms[0]}' has its own"
+        yield Rule("mean", True, message)
+    mean = values["mean"]
+    if isinstance(mean, InUnit) and "unit" not in values:
+        message = f"{mean:g} has no unit; write it with one, such as '500 N m'"
+        yield Rule("mean", True, message)
 
 
 def _from_zero(samples: Laps, angle_zero: float) -> tuple[Array, Array]:
     """Return the angles (n,) in degrees from 0 to the end of the cycle, and the torques (n,), straight in between."""
+    # two periods, of which the first begins in (−period, 0]
     period = float(round(samples.angles[-1] - samples.angles[0]))
-    begun = samples.angles - angle_zero
-    begun = begun - period * np.ceil(begun[0] / period)  # begins in (−period, 0]
-    angles, torques = np.concatenate([begun, begun + period]), np.tile(samples.values[0], 2)
-    first, last = (
-        np.searchsorted(angles, 0.0, side="right"),
-        np.searchsorted(angles, period, side="left"),
-    )
+    shifted = samples.angles - angle_zero
+    shifted = shifted - period * np.ceil(shifted[0] / period)
+    angles = np.concatenate([shifted, shifted + period])
+    torques = np.tile(samples.values[0], 2)
+    # the samples inside of one cycle, and the torques at its ends
+    first = np.searchsorted(angles, 0.0, side="right")
+    last = np.searchsorted(angles, period, side="left")
     between = np.interp(0.0, angles, torques)
     at_zero = torques[first - 1] if angles[first - 1] == 0 else between
     at_end = torques[last] if angles[last] == period else between
-    inside = slice(first, last)
-    return np.concatenate([[0.0], angles[inside], [period]]), np.concatenate(
-        [[at_zero], torques[inside], [at_end]]
+    return (
+        np.concatenate([[0.0], angles[first:last], [period]]),
+        np.concatenate([[at_zero], torques[first:last], [at_end]]),
     )

@@ -91,30 +91,37 @@ class Columns(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
         """Yield the rules on keys of the layout that contradict one another."""
-        if "file" not in given:
+        if "file" not in values:
             return
-        key = f"{cls.what}_columns" if f"{cls.what}_columns" in given else f"{cls.what}_column"
-        columns = given.get(key, 2)
-        if not isinstance(columns, tuple):
-            columns = (columns,)
-        first_column = given.get("pulse_column", given.get("angle_column", 1))
-        is_twice = first_column in columns and "angle_step" not in given
-        yield Rule(key, is_twice, f"column {first_column} is that of the angles")
-        is_timed = given.get("angle_unit") in SECONDS
-        has_speed = "recorded_speed" in given
+        # a column of both angles and figures
+        key = f"{cls.what}_column"
+        columns = (values.get(key, 2),)
+        if f"{cls.what}_columns" in values:
+            key = f"{cls.what}_columns"
+            columns = values[key]
+        angle_column = values.get("pulse_column", values.get("angle_column", 1))
+        is_of_angles = angle_column in columns and "angle_step" not in values
+        yield Rule(key, is_of_angles, f"column {angle_column} is that of the angles")
+        # times and the speed that makes them angles
+        has_times = values.get("angle_unit") in SECONDS
+        has_speed = "recorded_speed" in values
         message = "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"
-        yield Rule("angle_unit", is_timed and not has_speed and cls.needs_speed, message)
+        yield Rule("angle_unit", has_times and not has_speed and cls.needs_speed, message)
         message = "a speed is for times only; write 'angle_unit: s'"
-        yield Rule("recorded_speed", has_speed and not is_timed, message)
+        yield Rule("recorded_speed", has_speed and not has_times, message)
+        # the wheel whose pulses are angles
         message = "how many 'teeth' has the wheel in one turn? Write 'teeth: 60', say"
-        yield Rule("pulse_column", "pulse_column" in given and "teeth" not in given, message)
+        yield Rule("pulse_column", "pulse_column" in values and "teeth" not in values, message)
 
     @classmethod
     def layout(cls, keys: dict[str, Any]) -> Layout:
         """Return the layout that these keys describe."""
-        columns = keys.pop(f"{cls.what}_columns", None) or (keys.pop(f"{cls.what}_column", 2),)
+        columns = keys.pop(f"{cls.what}_columns", None)
+        if columns is None:
+            columns = (keys.pop(f"{cls.what}_column", 2),)
+        # a delimiter by its word, or as the sign itself
         delimiter = keys.pop("delimiter", "comma")
         words = {sign: word for word, sign in DELIMITERS.items()}
         return Layout(columns, delimiter=words.get(delimiter, delimiter), **keys)
@@ -228,42 +235,52 @@ class Measured(Columns):
         **layout: Any,
     ) -> Trace:
         """Return the trace that these keys describe, its file read."""
-        against = angle_sense == "against"
-        up, down = unit
+        counts_against = angle_sense == "against"
+        multiplier, divisor = unit
 
-        def pressures(figures: Array) -> Array:
+        def pressures_of(figures: Array) -> Array:
             """Return the pressures in Pa of figures of the file."""
             if scale == 0:
                 refused("0 leaves no pressure; write the pressure for 1 of the file", "scale")
-            return figures * up / down * scale + offset
+            return figures * multiplier / divisor * scale + offset
 
+        # the samples, from the file of the trace or from the machine file
+        files: tuple[str, ...] = ()
+        file_layout = Layout()
         if file is None:
             angles, figures = np.array(points, dtype=float).T
-            values = pressures(figures[np.newaxis])
+            pressures = pressures_of(figures[np.newaxis])
             samples = whole_cycles(
-                angles, values, lambda row: Fault(("points", row), ""), against=against
+                angles,
+                pressures,
+                lambda row: Fault(("points", row), ""),
+                against=counts_against,
             )
-            laid_out = Layout()
         else:
-            laid_out = cls.layout(layout)
-            samples = samples_of_file(file, laid_out, "pressure", pressures, against)
-        files, notes = (file,) if file else (), samples.notes
+            files = (file,)
+            file_layout = cls.layout(layout)
+            samples = samples_of_file(file, file_layout, "pressure", pressures_of, counts_against)
+        # the dead centre
+        notes = samples.notes
         if isinstance(angle_zero, Motored):
-            files, given = (*files, angle_zero.motored), angle_zero
-            angle_zero, note = dead_centre(given, laid_out, pressures, against)
+            files = (*files, angle_zero.motored)
+            angle_zero, note = dead_centre(angle_zero, file_layout, pressures_of, counts_against)
             notes = (*notes, note)
+        # the clearance; ε = 1 + 1/ε₀
+        if compression_ratio:
+            clearance = 1 / (compression_ratio - 1)
         return Trace(
             samples.angles,
             samples.values,
-            angle_zero=-angle_zero if against else angle_zero,
+            angle_zero=-angle_zero if counts_against else angle_zero,
             files=files,
             notes=notes,
             completed=samples.completed,
-            clearance=1 / (compression_ratio - 1) if compression_ratio else clearance,
+            clearance=clearance,
             level=drift == "linear",
             pegging=pegging,
-            against=against,
-            unit=up / down,
+            against=counts_against,
+            unit=multiplier / divisor,
             scale=scale,
             clock=samples.clock,
             suction=suction_line,
@@ -272,23 +289,26 @@ class Measured(Columns):
 
 
 def dead_centre(
-    given: Motored, layout: Layout, base: Callable[[Array], Array], against: bool
+    motored: Motored, layout: Layout, base: Callable[[Array], Array], against: bool
 ) -> tuple[float, str]:
-    """Return the angle of the dead centre in degrees as the file counts, and a note on it; raises RuleError."""
+    """Return the angle of the dead centre in degrees as the file counts, and a note on it; raises RuleError.
+
+    base: turns figures of the file into Pa; against: its angles count against the rotation.
+    """
+    file = motored.motored
     try:
-        samples = samples_of_file(given.motored, layout, "pressure", base, against)
+        samples = samples_of_file(file, layout, "pressure", base, against)
         if samples.clock is not None and samples.clock.is_free:
             refused("a motored trace by time needs a 'recorded_speed'")
-        peak, doubt = motored_peak(samples.angles, samples.values)
+        peak, uncertainty = motored_peak(samples.angles, samples.values)
     except RuleError as error:
-        raise RuleError(
-            *(fault._replace(path=("angle_zero", "motored")) for fault in error.faults)
-        ) from None
-    sense = -1 if against else 1
-    zero = sense * (peak.place + given.loss_angle)
+        faults = [fault._replace(path=("angle_zero", "motored")) for fault in error.faults]
+        raise RuleError(*faults) from None
+    sign = -1 if against else 1
+    zero = sign * (peak.place + motored.loss_angle)
     note = (
-        f"angle_zero is {zero:.4g} deg, uncertain by {doubt:.2g} deg: the peak of a parabola through "
-        f"{peak.samples} samples of {basename(given.motored)} is at {sense * peak.place:.4g} deg, the dead centre "
-        f"{given.loss_angle:g} deg later"
+        f"angle_zero is {zero:.4g} deg, uncertain by {uncertainty:.2g} deg: "
+        f"the peak of a parabola through {peak.samples} samples of {basename(file)} "
+        f"is at {sign * peak.place:.4g} deg, the dead centre {motored.loss_angle:g} deg later"
     )
     return zero, note

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from kurbel.declared.reading import LONGEST_VALUE, text_in_one_line
-from kurbel.errors import Fault, MachineFileError
+from kurbel.errors import Fault, MachineFileError, Step
 
 _LINE_END = r"\r\n|[\n\r\x85\u2028\u2029]"  # what YAML takes for the end of a line, no more
 
@@ -33,20 +33,23 @@ class Origin(NamedTuple):
     @property
     def stem(self) -> str:
         """The name a machine gets from its file."""
-        stem = os.path.splitext(os.path.basename(self.name))[0].strip()
-        named = stem.isprintable() and stem and not self.name.startswith("<")
-        return stem[:LONGEST_VALUE] if named else "machine"
+        file_name, _ = os.path.splitext(os.path.basename(self.name))
+        stem = file_name.strip()
+        is_file = not self.name.startswith("<")
+        return stem[:LONGEST_VALUE] if stem and is_file and stem.isprintable() else "machine"
 
     def error(self, *faults: Fault) -> MachineFileError:
         """Return these faults as an error, each once and in the order of the file."""
         lines = [*yaml_lines(self.text), ""]  # the end of a file may be a place, too
-        found = []
-        for fault in sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column)):
-            path = tuple(
-                text_in_one_line(step) if isinstance(step, str) else step for step in fault.path
-            )
-            found.append(fault._replace(path=path, source_line=lines[fault.line - 1]))
-        return MachineFileError(self.name, found)
+        in_order = sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column))
+        shown = []
+        for fault in in_order:
+            path: list[Step] = []
+            for step in fault.path:
+                path.append(text_in_one_line(step) if isinstance(step, str) else step)
+            source_line = lines[fault.line - 1]
+            shown.append(fault._replace(path=tuple(path), source_line=source_line))
+        return MachineFileError(self.name, shown)
 
 
 def yaml_lines(text: str) -> list[str]:

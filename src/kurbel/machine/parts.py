@@ -61,9 +61,9 @@ class ConnectingRod(Record):
 
     def at_crosshead(self, length: float) -> float:
         """Reciprocating mass in kg: the share, or m (1 − a/L) with the length L of the rod in m."""
-        share = (
-            self.share if self.center_of_gravity is None else 1 - self.center_of_gravity / length
-        )
+        share = self.share
+        if self.center_of_gravity is not None:
+            share = 1 - self.center_of_gravity / length
         return self.mass * share
 
     def at_pin(self, length: float) -> float:
@@ -78,12 +78,14 @@ class ConnectingRod(Record):
         """
         assert self.center_of_gravity is not None
         assert self.inertia is not None
-        return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
+        a = self.center_of_gravity
+        return self.inertia - self.mass * a * (length - a)
 
 
 def _part(text: str) -> Key:
-    each = NumberForm("mass", least=0)
-    return alternative(OneOf(each, Listing(each)), text, instead="reciprocating")
+    """Return the key of a reciprocating part: a mass, or a list of masses."""
+    mass = NumberForm("mass", least=0)
+    return alternative(OneOf(mass, Listing(mass)), text, instead="reciprocating")
 
 
 class Masses(Record):
@@ -126,9 +128,12 @@ class Masses(Record):
     pistons: tuple[float, ...] = ()
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
-        none = "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …"
-        yield Rule((), not given, none)
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        message = (
+            "no mass is given; leave 'masses' out or give 'reciprocating', "
+            "or 'piston', 'crosshead', …"
+        )
+        yield Rule((), not values, message)
 
     @classmethod
     def of_keys(
@@ -138,29 +143,30 @@ class Masses(Record):
         **parts: Any,
     ) -> Masses:
         """Return the masses of these keys; each part is a mass or a tuple of masses."""
-        sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in parts.items()}
+        sums = {}
+        for name, mass in parts.items():
+            sums[name] = total(*mass) if isinstance(mass, tuple) else mass
         if connecting_rod is not None and not isinstance(connecting_rod, ConnectingRod):
             connecting_rod = ConnectingRod(connecting_rod)
+        piston = parts.get("piston")
         return cls(
             parts=total(*sums.values()),
             connecting_rod=connecting_rod,
             rotating=rotating,
             crosshead=sums.get("crosshead"),
             undivided="reciprocating" in sums,
-            pistons=piston if isinstance(piston := parts.get("piston"), tuple) else (),
+            pistons=piston if isinstance(piston, tuple) else (),
         )
 
     def at_pin(self, rod_length: float) -> float:
         """Mass in kg that turns with the crank pin, with the share of a connecting rod of this length in m."""
-        return self.rotating + (
-            self.connecting_rod.at_pin(rod_length) if self.connecting_rod else 0.0
-        )
+        rod = self.connecting_rod
+        return self.rotating + (rod.at_pin(rod_length) if rod else 0.0)
 
     def at_crosshead(self, rod_length: float) -> float:
         """Reciprocating mass m in kg (R 298): all parts, and the share of a connecting rod of this length in m."""
-        return self.parts + (
-            self.connecting_rod.at_crosshead(rod_length) if self.connecting_rod else 0.0
-        )
+        rod = self.connecting_rod
+        return self.parts + (rod.at_crosshead(rod_length) if rod else 0.0)
 
 
 class GasOnRings(Record):
@@ -184,7 +190,7 @@ class Rings(Record):
         OneOf(Choice(("gas",)), NumberForm("pressure", least=0), RecordForm(GasOnRings)),
         "Pressure of the ring on the wall; `gas` or `{gas: k}`: k times the pressure difference across the piston",
         "p_r",
-        gives=lambda given: {"pressure": GasOnRings(1.0)} if given["pressure"] == "gas" else {},
+        gives=lambda values: {"pressure": GasOnRings(1.0)} if values["pressure"] == "gas" else {},
     )
     coefficient: float = field("ratio", "Coefficient of friction", "f", least=0)
 
@@ -284,39 +290,42 @@ class Friction(Record):
 
     def rules(self) -> Iterator[Rule]:
         sliding = (self.crosshead, self.rings, self.constant, self.block, self.guides)
-        none = not self.of_pins and all(one is None for one in sliding)
-        given = "'crosshead', 'rings', 'constant', 'crank_pin', 'crosshead_pin', 'journals', 'block' or 'guides'"
-        yield Rule((), none, f"no friction is given; leave 'friction' out or give {given}")
+        slides = any(friction is not None for friction in sliding)
+        keys = (
+            "'crosshead', 'rings', 'constant', 'crank_pin', 'crosshead_pin', "
+            "'journals', 'block' or 'guides'"
+        )
+        message = f"no friction is given; leave 'friction' out or give {keys}"
+        yield Rule((), not slides and not self.of_pins, message)
 
     @property
     def of_pins(self) -> tuple[str, ...]:
         """The keys of the pins and journals whose coefficient is given."""
-        given = (self.crank_pin, self.crosshead_pin, self.journals)
-        return tuple(name for name, coefficient in zip(_PINS, given) if coefficient is not None)
+        coefficients = (self.crank_pin, self.crosshead_pin, self.journals)
+        return tuple(
+            pin for pin, coefficient in zip(_PINS, coefficients) if coefficient is not None
+        )
 
     def rules_beside(self, shaft: Crankshaft | None, pin_of_yoke: float | None) -> Iterator[Rule]:
         """Yield a diameter that is needed and given nowhere, or given here and in the crankshaft.
 
         pin_of_yoke: diameter in m of the crank pin that a Scotch yoke gives.
         """
-        for name in self.of_pins:
-            here, there = _PINS[name]
-            elsewhere = (
-                f"'{there}' in 'crankshaft'"
-                if there and shaft and vars(shaft)[there] is not None
-                else ""
-            )
-            if name == "crank_pin" and pin_of_yoke is not None:
+        for pin in self.of_pins:
+            key, key_of_shaft = _PINS[pin]
+            # a diameter that is given elsewhere
+            elsewhere = ""
+            if pin == "crank_pin" and pin_of_yoke is not None:
                 elsewhere = "'pin_diameter'"
-            given = vars(self)[here] is not None
-            yield Rule(
-                here,
-                given and bool(elsewhere),
-                f"{elsewhere} gives the same; leave one of them out",
-            )
-            needed = f"'{name}' needs a diameter: write for instance '{here}: 120 mm'"
-            or_there = f", or give '{there}' in 'crankshaft'" if there else ""
-            yield Rule(name, not given and not elsewhere, needed + or_there)
+            elif shaft and key_of_shaft and vars(shaft)[key_of_shaft] is not None:
+                elsewhere = f"'{key_of_shaft}' in 'crankshaft'"
+            has_diameter = vars(self)[key] is not None
+            message = f"{elsewhere} gives the same; leave one of them out"
+            yield Rule(key, has_diameter and bool(elsewhere), message)
+            message = f"'{pin}' needs a diameter: write for instance '{key}: 120 mm'"
+            if key_of_shaft:
+                message += f", or give '{key_of_shaft}' in 'crankshaft'"
+            yield Rule(pin, not has_diameter and not elsewhere, message)
 
 
 class RamForce(Record):
@@ -335,10 +344,9 @@ class RamForce(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
-        yield Rule(
-            (), not given, "give 'work', the force on the working stroke, or 'return', or both"
-        )
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        message = "give 'work', the force on the working stroke, or 'return', or both"
+        yield Rule((), not values, message)
 
 
 class Moment(RamForce):
@@ -383,16 +391,14 @@ class RodPoint(Record):
 
     def rules_on(self, mechanism: Mechanism) -> Iterator[Rule]:
         """Yield what keeps the point from being one of this mechanism."""
-        endless = np.isinf(mechanism.coupler_length)
-        yield Rule(
-            (),
-            endless,
-            f"this {mechanism.name} has no connecting rod of a length, of which it were a point",
+        is_infinite = np.isinf(mechanism.coupler_length)
+        message = (
+            f"this {mechanism.name} has no connecting rod of a length, of which it were a point"
         )
-        other = np.logical_not(endless) & (self.origin not in ("crank_pin", mechanism.far_pin))
-        yield Rule(
-            "from", other, f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}"
-        )
+        yield Rule((), is_infinite, message)
+        has_pin = self.origin in ("crank_pin", mechanism.far_pin)
+        message = f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}"
+        yield Rule("from", np.logical_not(is_infinite) & (not has_pin), message)
 
 
 def _gas() -> type[Gas]:
@@ -431,11 +437,10 @@ class Piston(Record):
     lever_ratio: float = 1.0
 
     def rules(self) -> Iterator[Rule]:
-        for key, rod in (
-            ("head_end_rod", self.head_end_rod),
-            ("crank_end_rod", self.crank_end_rod),
-        ):
-            yield Rule(key, rod >= self.bore, f"{{{key}}} is no thinner than the bore ({{bore}})")
+        message = "{head_end_rod} is no thinner than the bore ({bore})"
+        yield Rule("head_end_rod", self.head_end_rod >= self.bore, message)
+        message = "{crank_end_rod} is no thinner than the bore ({bore})"
+        yield Rule("crank_end_rod", self.crank_end_rod >= self.bore, message)
 
     @property
     def head_area(self) -> float:
@@ -460,17 +465,18 @@ class Piston(Record):
 
         A pump or a compressor works in two strokes, whatever drives it: its cards then run twice in 720°.
         """
-        given = [chamber.cycles for chamber in self.chambers.values()]
-        fits = all(cycle in each for each in given)
-        return cycle if fits or not all("two-stroke" in each for each in given) else "two-stroke"
+        cycles_of_cards = [chamber.cycles for chamber in self.chambers.values()]
+        fit = all(cycle in cycles for cycles in cycles_of_cards)
+        work_in_two_strokes = all("two-stroke" in cycles for cycles in cycles_of_cards)
+        return "two-stroke" if work_in_two_strokes and not fit else cycle
 
     def indicator_rules(self, cycle: str, ambient: Number) -> Iterator[Rule]:
         """Yield the first thing at each end that does not fit the cycle or the ambient pressure in Pa."""
-        lift = 0.0 if self.indicator and self.indicator.absolute else ambient
+        is_absolute = self.indicator is not None and self.indicator.absolute
+        lift = 0.0 if is_absolute else ambient
         for end, chamber in self.chambers.items():
-            yield from (
-                rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift))
-            )
+            for rule in first_of(chamber.rules_in(cycle, lift)):
+                yield rule.below("indicator", end)
 
 
 class TandemPiston(Piston):
@@ -488,6 +494,5 @@ class TandemPiston(Piston):
 
     def rules(self) -> Iterator[Rule]:
         yield from super().rules()
-        yield Rule(
-            "lever_ratio", self.lever_ratio == 0, "a piston with a lever ratio of 0 does not move"
-        )
+        message = "a piston with a lever ratio of 0 does not move"
+        yield Rule("lever_ratio", self.lever_ratio == 0, message)

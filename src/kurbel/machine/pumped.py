@@ -34,7 +34,7 @@ class Gas(Record):
         "M",
         above=0,
         instead="gas_constant",
-        gives=lambda given: {"gas_constant": GAS_CONSTANT / given["molar_mass"]},
+        gives=lambda values: {"gas_constant": GAS_CONSTANT / values["molar_mass"]},
     )
     isentropic_exponent: float | None = field(
         "ratio",
@@ -92,10 +92,9 @@ class Vessel(Record):
     )
 
     def rules(self) -> Iterator[Rule]:
-        nothing = self.volume is None and self.pressure_swing is None
-        yield Rule(
-            (), nothing, "give the 'volume' of the vessel, or the 'pressure_swing' that it may have"
-        )
+        is_empty = self.volume is None and self.pressure_swing is None
+        message = "give the 'volume' of the vessel, or the 'pressure_swing' that it may have"
+        yield Rule((), is_empty, message)
 
 
 class Pipe(Record):

@@ -411,6 +411,7 @@ class _Assembly:
     def __init__(self, parts: Sequence[ShaftPart]) -> None:
         self.masses: list[ShaftMass] = []
         self.segments: list[ShaftSegment] = []
+        self._written = 0
         self._joints = 0
         self._loads: list[int] = []
         speeds = [item.speed for item in _items(parts) if item.part.cylinder]
@@ -464,10 +465,12 @@ class _Assembly:
         return last
 
     def _mass(self, part: ShaftPart, ratio: float) -> ShaftMass:
-        square, cranks = ratio**2, part.cylinder or ()
-        number = 1 + sum(not mass.is_joint for mass in self.masses)
+        square = ratio**2
+        cranks = part.cylinder or ()
+        # masses that gears join count each, so that no two have one name
+        self._written += 1
         return ShaftMass(
-            name=part.word or part.name or " + ".join(cranks) or f"mass {number}",
+            name=part.word or part.name or " + ".join(cranks) or f"mass {self._written}",
             inertia=square * (part.inertia or 0.0),
             cylinders=cranks,
             flywheel=square * (part.word == FLYWHEEL),

@@ -31,9 +31,9 @@ class Rim(Record):
         above=0,
         instead="mean_diameter",
         needs="inner_diameter",
-        gives=lambda given: {
-            "mean_diameter": (given["outer_diameter"] + given["inner_diameter"]) / 2,
-            "depth": (given["outer_diameter"] - given["inner_diameter"]) / 2,
+        gives=lambda values: {
+            "mean_diameter": (values["outer_diameter"] + values["inner_diameter"]) / 2,
+            "depth": (values["outer_diameter"] - values["inner_diameter"]) / 2,
         },
     )
     _inner_diameter = alternative(
@@ -81,28 +81,27 @@ class Rim(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
-        inner, outer = given.get("inner_diameter"), given.get("outer_diameter")
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        inner = values.get("inner_diameter")
+        outer = values.get("outer_diameter")
         if inner is not None and outer is not None:
             sentence = "{inner:length} leaves no rim inside of the outer diameter ({outer:length})"
             yield Rule("inner_diameter", inner >= outer, sentence, {"inner": inner, "outer": outer})
 
     def rules(self) -> Iterator[Rule]:
-        beyond = self.depth > self.mean_diameter
-        yield Rule(
-            "depth",
-            beyond,
-            "{depth} is more than the mean diameter ({mean_diameter}), that of a disc",
-        )
+        message = "{depth} is more than the mean diameter ({mean_diameter}), that of a disc"
+        yield Rule("depth", self.depth > self.mean_diameter, message)
         if self.sized_by:
-            message = "give 'outer_diameter' and 'inner_diameter', or 'depth' with 'mean_diameter'"
-            without = f"gives no moment of inertia without the depth of the rim; {message}"
-            yield Rule(self.sized_by, self.depth == 0, without)
+            advice = "give 'outer_diameter' and 'inner_diameter', or 'depth' with 'mean_diameter'"
+            message = f"gives no moment of inertia without the depth of the rim; {advice}"
+            yield Rule(self.sized_by, self.depth == 0, message)
 
     @property
     def sized_by(self) -> str:
         """What gives its moment of inertia: `mass` or `width`, or an empty text."""
-        return "mass" if self.mass is not None else "width" if self.width is not None else ""
+        if self.mass is not None:
+            return "mass"
+        return "width" if self.width is not None else ""
 
     @property
     def inertia(self) -> float | None:
@@ -110,7 +109,9 @@ class Rim(Record):
         mass = self.mass
         if self.width is not None:
             mass = self.density * self.width * math.pi * self.mean_diameter * self.depth
-        return None if mass is None else mass * self._square / 4
+        if mass is None:
+            return None
+        return mass * self._square / 4
 
     @property
     def _square(self) -> float:
@@ -130,6 +131,12 @@ class Rim(Record):
         return self.density * self.speed(omega) ** 2
 
 
+def _rim_and_inertia(values: ValuesByKey) -> dict[str, object]:
+    """Return what a rim determines of its flywheel: the moment of inertia if its sizes are given."""
+    rim = values["rim"]
+    return {"rim": rim, "inertia": rim.inertia} if rim.sized_by else {"rim": rim}
+
+
 class Flywheel(Record):
     """A flywheel by its moment of inertia, by the wanted fluctuation of the speed, or both."""
 
@@ -140,7 +147,7 @@ class Flywheel(Record):
         "GD²",
         least=0,
         instead="inertia",
-        gives=lambda given: {"inertia": given["gd2"] / 4},
+        gives=lambda values: {"inertia": values["gd2"] / 4},
     )
     _mass = alternative(
         "mass",
@@ -149,7 +156,7 @@ class Flywheel(Record):
         least=0,
         instead="inertia",
         needs="radius_of_gyration",
-        gives=lambda given: {"inertia": given["mass"] * given["radius_of_gyration"] ** 2},
+        gives=lambda values: {"inertia": values["mass"] * values["radius_of_gyration"] ** 2},
     )
     _radius_of_gyration = alternative(
         "length",
@@ -172,28 +179,31 @@ class Flywheel(Record):
         "A rim that has the whole moment of inertia: its dimensions give J; without them the required section is "
         "printed",
         absent="no section",
-        gives=lambda given: (
-            {"rim": given["rim"]}
-            | ({"inertia": given["rim"].inertia} if given["rim"].sized_by else {})
-        ),
+        gives=_rim_and_inertia,
     )
     rim: Rim | None = None
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
-        rim = given.get("rim")
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        rim = values.get("rim")
         if isinstance(rim, Rim) and rim.sized_by:
-            message = "the moment of inertia is given and also follows from the sizes of the rim; give only one of them"
-            yield Rule(
-                ("rim", rim.sized_by), bool({"inertia", "gd2", "mass"} & given.keys()), message
+            has_inertia = bool({"inertia", "gd2", "mass"} & values.keys())
+            message = (
+                "the moment of inertia is given and also follows from the sizes of the rim; "
+                "give only one of them"
             )
+            yield Rule(("rim", rim.sized_by), has_inertia, message)
 
     def rules(self) -> Iterator[Rule]:
-        needed = "a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, or the wanted 'fluctuation'"
-        yield Rule((), self.inertia is None and self.fluctuation is None, needed)
+        message = (
+            "a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, "
+            "or the wanted 'fluctuation'"
+        )
+        yield Rule((), self.inertia is None and self.fluctuation is None, message)
 
 
 def _cycle_name(cycle: str, turns: int) -> str:
+    """Return the name of a working cycle; '' where the machine repeats after other turns than those of its cycle."""
     return f"a {cycle} cycle" if turns == CYCLES[cycle] else ""
 
 
@@ -217,17 +227,19 @@ class Effort:
 
     def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, of so many turns of the shaft."""
-        last, whole = self.angles[-1], 360.0 * turns
-        write = (
-            "cycle: four-stroke" if turns < 2 and last == 720 else f"cycle_turns: {last / 360:g}"
+        last = self.angles[-1]
+        cycle_angle = 360.0 * turns
+        # a diagram of a single turn repeats in the second one of a four-stroke cycle
+        repeats = cycle_angle % last == 0
+        advice = f"cycle_turns: {last / 360:g}"
+        if turns < 2 and last == 720:
+            advice = "cycle: four-stroke"
+        name = _cycle_name(cycle, turns) or "the cycle"
+        message = (
+            f"the diagram runs to {last:g} deg, {name} has {cycle_angle:g} deg; "
+            f"write '{advice}' at the top"
         )
-        has = f"{_cycle_name(cycle, turns) or 'the cycle'} has {whole:g} deg; write '{write}' at the top"
-        # one of a single turn repeats in the second one of a four-stroke cycle
-        yield Rule(
-            "file" if self.files else "points",
-            whole % last != 0,
-            f"the diagram runs to {last:g} deg, {has}",
-        )
+        yield Rule("file" if self.files else "points", not repeats, message)
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,10 +262,14 @@ class Harmonics:
 
     def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, of so many turns of the shaft."""
-        name = _cycle_name(cycle, turns)
-        order = next((order for order, _, _ in self.terms if not is_whole(order * turns)), 0)
-        again = f"order {order:g} does not repeat after {name or f'{turns} turns'}; orders count periods per turn"
-        yield Rule("harmonics", order > 0, again)
+        name = _cycle_name(cycle, turns) or f"{turns} turns"
+        for order, _, _ in self.terms:
+            if not is_whole(order * turns):
+                message = (
+                    f"order {order:g} does not repeat after {name}; orders count periods per turn"
+                )
+                yield Rule("harmonics", True, message)
+                return
 
 
 @dataclass(frozen=True, eq=False)
@@ -276,11 +292,10 @@ class Swing:
 
     def energy(self, turns: int) -> float | None:
         """Return ΔE in J, with the work of a cycle of so many turns, A = 2π turns M_m."""
-        return (
-            self.swing
-            if self.coefficient is None
-            else self.coefficient * (2 * math.pi * turns) * abs(self.mean or 0.0)
-        )
+        if self.coefficient is None:
+            return self.swing
+        work_per_torque = 2 * math.pi * turns
+        return self.coefficient * work_per_torque * abs(self.mean or 0.0)
 
 
 KnownDiagram = Effort | Harmonics | Swing
@@ -311,51 +326,48 @@ HARMONICS = alternative(
 )
 
 
-def harmonics_need_a_unit(given: ValuesByKey) -> Rule:
+def harmonics_need_a_unit(values: ValuesByKey) -> Rule:
     """Return the rule that coefficients of harmonics have the unit of their key."""
-    return Rule(
-        "harmonics",
-        "harmonics" in given and "unit" not in given,
-        "'harmonics' needs 'unit' beside it",
-    )
+    lacks_unit = "harmonics" in values and "unit" not in values
+    return Rule("harmonics", lacks_unit, "'harmonics' needs 'unit' beside it")
 
 
 def points_of(unit: UnitFactor, points: list[DiagramPoint]) -> Effort:
     """Return the diagram of the value of `points` in a machine file; raises RuleError."""
-    refuse(
-        *(
-            fault.below(("points",))
-            for fault in _angle_faults(points) or size_faults(points, unit, "torque")
-        )
-    )
-    up, down = unit
-    return Effort(
-        tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points)
-    )
+    faults = _angle_faults(points) or size_faults(points, unit, "torque")
+    refuse(*(fault.below(("points",)) for fault in faults))
+    multiplier, divisor = unit
+    angles = tuple(angle for angle, _ in points)
+    torques = tuple(torque * multiplier / divisor for _, torque in points)
+    return Effort(angles, torques)
 
 
 def harmonics_of(unit: UnitFactor, mean: float, terms: list[DiagramPoint]) -> Harmonics:
     """Return those of the values of `unit`, `mean` and `harmonics` in a machine file; raises RuleError."""
     for index, (order, *_) in enumerate(terms):
         if not 0 < order <= _HIGHEST:
-            most = f"it must be more than 0, at most {_HIGHEST}"
-            refused(
-                f"order {order:g} is no number of periods per turn; {most}", "harmonics", index, 0
-            )
-    sizes = [
-        (0.0, mean if isinstance(mean, InUnit) else 0.0),
-        *((n, abs(c) + abs(s)) for n, c, s in terms),
-    ]
+            bounds = f"it must be more than 0, at most {_HIGHEST}"
+            message = f"order {order:g} is no number of periods per turn; {bounds}"
+            refused(message, "harmonics", index, 0)
+    # no torque is too large for its unit
+    sizes = [(0.0, mean if isinstance(mean, InUnit) else 0.0)]
+    sizes += [(order, abs(cosine) + abs(sine)) for order, cosine, sine in terms]
     refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque")))
-    up, down = unit
-    return Harmonics(
-        in_unit(mean, unit), tuple((n, c * up / down, s * up / down) for n, c, s in terms)
+    # in N m
+    multiplier, divisor = unit
+    terms_in_newton_metres = tuple(
+        (order, cosine * multiplier / divisor, sine * multiplier / divisor)
+        for order, cosine, sine in terms
     )
+    return Harmonics(in_unit(mean, unit), terms_in_newton_metres)
 
 
 def in_unit(mean: float, unit: UnitFactor) -> float:
     """Return a mean torque in N m, where a bare number is in this unit."""
-    return mean * unit[0] / unit[1] if isinstance(mean, InUnit) else mean
+    if not isinstance(mean, InUnit):
+        return mean
+    multiplier, divisor = unit
+    return mean * multiplier / divisor
 
 
 class Load(Record):
@@ -381,32 +393,36 @@ class Load(Record):
     )
     _unit = UNIT
     _points = POINTS._replace(
-        gives=lambda given: {"diagram": points_of(given["unit"], given["points"])}
+        gives=lambda values: {"diagram": points_of(values["unit"], values["points"])}
     )
     _mean = MEAN._replace(needs="harmonics")
     _harmonics = HARMONICS._replace(
-        gives=lambda given: {
-            "diagram": harmonics_of(given["unit"], given["mean"], given["harmonics"])
+        gives=lambda values: {
+            "diagram": harmonics_of(values["unit"], values["mean"], values["harmonics"])
         }
     )
     diagram: Effort | Harmonics | None = None
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
-        lone = "unit" in given and not {"points", "harmonics"} & given.keys()
-        yield Rule("unit", lone, "'unit' needs 'points' or 'harmonics' beside it")
-        yield harmonics_need_a_unit(given)
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        has_numbers = bool({"points", "harmonics"} & values.keys())
+        is_lone = "unit" in values and not has_numbers
+        yield Rule("unit", is_lone, "'unit' needs 'points' or 'harmonics' beside it")
+        yield harmonics_need_a_unit(values)
 
     def rules(self) -> Iterator[Rule]:
-        by = "harmonics" if isinstance(self.diagram, Harmonics) else "points"
-        forms = {"power_law": self.power, "slip": self.slip, by: self.diagram}
-        given = [name for name, value in forms.items() if value is not None]
-        message = (
-            "give one of 'power_law', 'slip', 'points' or 'harmonics'; or write 'load: constant'"
-        )
-        yield Rule((), not given, message)
-        both = f"{' and '.join(map(repr, given))} are different loads; keep one of them"
-        yield Rule(given[-1] if given else (), len(given) > 1, both)
+        diagram_key = "harmonics" if isinstance(self.diagram, Harmonics) else "points"
+        forms = {"power_law": self.power, "slip": self.slip, diagram_key: self.diagram}
+        keys = [key for key, value in forms.items() if value is not None]
+        if not keys:
+            message = (
+                "give one of 'power_law', 'slip', 'points' or 'harmonics'; "
+                "or write 'load: constant'"
+            )
+            yield Rule((), True, message)
+        elif len(keys) > 1:
+            message = f"{' and '.join(map(repr, keys))} are different loads; keep one of them"
+            yield Rule(keys[-1], True, message)
 
     @property
     def varies(self) -> bool:
@@ -428,11 +444,17 @@ def _angle_faults(points: list[DiagramPoint]) -> list[Fault]:
         if not 0 <= angle <= 360 * MOST_TURNS:
             message = f"{angle:g} deg is outside the cycle; angles run from 0 to 360 or 720 deg"
             return [Fault((index,), message)]
-    if faults := order_faults(points, "{:g} deg"):
+    faults = order_faults(points, "{:g} deg")
+    if faults:
         return faults
-    first, last = points[0][0], points[-1][0]
-    if first != 0 or last == 0 or last % 360:
-        whole = "a diagram runs from 0 to 360 deg, or to 720 deg in a four-stroke cycle"
-        ends = "give the values at both ends of the cycle, with angles in degrees"
-        return [Fault((), f"{whole}, this one runs from {first:g} to {last:g} deg; {ends}")]
-    return []
+    first = points[0][0]
+    last = points[-1][0]
+    is_cycle = first == 0 and last != 0 and last % 360 == 0
+    if is_cycle:
+        return []
+    message = (
+        "a diagram runs from 0 to 360 deg, or to 720 deg in a four-stroke cycle, "
+        f"this one runs from {first:g} to {last:g} deg; "
+        "give the values at both ends of the cycle, with angles in degrees"
+    )
+    return [Fault((), message)]

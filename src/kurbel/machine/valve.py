@@ -76,25 +76,26 @@ class Eccentric(NamedTuple):
     def nearer(self, off_square: Number) -> Number:
         """Return g = l − √(l² − r² cos² a) in m for r cos a, without cancellation."""
         k = self.slope
-        c = off_square * off_square
-        return k * c / (1 + sqrt(np.maximum(1 - k * k * c, 0.0)))
+        square = off_square * off_square
+        return k * square / (1 + sqrt(np.maximum(1 - k * k * square, 0.0)))
 
     def displacement(self, angle: CrankAngle, sense: Number) -> Number:
         """Return r sin a + σ g in m at a crank angle."""
-        along: Number = self.ahead * angle.cos + self.square * angle.sin
-        across = self.square * angle.cos - self.ahead * angle.sin
-        return along + sense * self.nearer(across)
+        r_sin_a: Number = self.ahead * angle.cos + self.square * angle.sin
+        r_cos_a = self.square * angle.cos - self.ahead * angle.sin
+        return r_sin_a + sense * self.nearer(r_cos_a)
 
     def angle_at(self, displacement: Number, sense: Number) -> Number:
         """Return a in degrees, from −90 to 90, at which r sin a + σ g = d on the rising branch.
 
         With h = σ k:  a = atan2(d − h (r² + d²)/2, √[(r − d)(r + d)(1 + h (r − d)/2)(1 − h (r + d)/2)]).
         """
-        r, d = self.radius, displacement
+        r = self.radius
+        d = displacement
         h = sense * self.slope
-        along = d - h * (r * r + d * d) / 2
-        squared = (r - d) * (r + d) * (1 + h * (r - d) / 2) * (1 - h * (r + d) / 2)
-        return bearing(along, sqrt(np.maximum(squared, 0.0)))
+        sine_part = d - h * (r * r + d * d) / 2
+        cosine_part = (r - d) * (r + d) * (1 + h * (r - d) / 2) * (1 - h * (r + d) / 2)
+        return bearing(sine_part, sqrt(np.maximum(cosine_part, 0.0)))
 
 
 class Link(Record):
@@ -127,12 +128,12 @@ class Link(Record):
 
         radius, advance in degrees, rod: of the two eccentrics.
         """
-        sin_cos = CrankAngle.of(advance)
+        delta = CrankAngle.of(advance)
         kappa = self.position
-        raised = (1 - kappa * kappa) * (self.half_length / rod) * sin_cos.cos
-        crossing = 1.0 if self.rods == "open" else -1.0
-        A = radius * (sin_cos.sin + crossing * raised)
-        B = radius * kappa * sin_cos.cos
+        rise = (1 - kappa * kappa) * (self.half_length / rod) * delta.cos
+        rods_sign = 1.0 if self.rods == "open" else -1.0
+        A = radius * (delta.sin + rods_sign * rise)
+        B = radius * kappa * delta.cos
         return Eccentric(np.hypot(A, B), A, B, 0.0)
 
 
@@ -191,21 +192,20 @@ class ValveEnd(NamedTuple):
     @property
     def events(self) -> Events:
         """The angles at which the edges pass those of the port, from 0 to 360 degrees."""
-        advance = self.eccentric.advance
-        opens = self.eccentric.angle_at(self.steam_lap - self.shift, self.sense)
-        empties = self.eccentric.angle_at(-self.exhaust_lap - self.shift, self.sense)
+        delta = self.eccentric.advance
+        opens_to_steam = self.eccentric.angle_at(self.steam_lap - self.shift, self.sense)
+        shuts_exhaust = self.eccentric.angle_at(-self.exhaust_lap - self.shift, self.sense)
         return Events(
-            cut_off=_settled(180.0 - opens - advance),
-            release=_settled(180.0 - empties - advance),
-            compression=_settled(360.0 + empties - advance),
-            admission=_settled(360.0 + opens - advance),
+            cut_off=_settled(180.0 - opens_to_steam - delta),
+            release=_settled(180.0 - shuts_exhaust - delta),
+            compression=_settled(360.0 + shuts_exhaust - delta),
+            admission=_settled(360.0 + opens_to_steam - delta),
         )
 
     def fractions(self, mechanism: Mechanism) -> Events:
         """Return what part of the stroke the piston is away from this end at each event."""
-        return Events(
-            *(self._away(degrees + self.dead_centre, mechanism) for degrees in self.events)
-        )
+        away = [self._away(degrees + self.dead_centre, mechanism) for degrees in self.events]
+        return Events(*away)
 
     def _away(self, degrees: Number, mechanism: Mechanism) -> Number:
         """Return the distance of the piston from this end over the stroke, at a crank angle."""
@@ -227,23 +227,34 @@ class ValveEnd(NamedTuple):
 
     def rules(self, setting: str) -> Iterator[Rule]:
         """Yield what keeps the valve from serving this end; setting: the key by which it is set."""
-        r, S, E, v = self.eccentric.radius, self.steam_lap, self.exhaust_lap, self.lead
-        less = "its lap must be less than half the travel"
+        r = self.eccentric.radius
+        S = self.steam_lap
+        E = self.exhaust_lap
         yield Rule("steam_lap", S < 0, f"{self.name}: a steam lap is not negative")
-        yield Rule("steam_lap", S - self.shift >= r, f"{self.name}: never opens to steam; {less}")
-        yield Rule(
-            "exhaust_lap", E + self.shift >= r, f"{self.name}: never opens to the exhaust; {less}"
-        )
+        # the travel opens the port
+        advice = "its lap must be less than half the travel"
+        message = f"{self.name}: never opens to steam; {advice}"
+        yield Rule("steam_lap", S - self.shift >= r, message)
+        message = f"{self.name}: never opens to the exhaust; {advice}"
+        yield Rule("exhaust_lap", E + self.shift >= r, message)
 
         # with both edges in line nothing expands, as in the engines without laps, advance and lead
         laps = S + E
-        in_line = (laps <= _ROUNDING * r) & (self.eccentric.ahead > 0)
-        both = f"{self.name}: open to steam and exhaust at once, since the laps together are {{laps:length}}"
-        yield Rule("exhaust_lap", (laps < 0) | in_line, both, {"laps": laps})
+        is_in_line = (laps <= _ROUNDING * r) & (self.eccentric.ahead > 0)
+        message = (
+            f"{self.name}: open to steam and exhaust at once, "
+            "since the laps together are {laps:length}"
+        )
+        yield Rule("exhaust_lap", (laps < 0) | is_in_line, message, {"laps": laps})
 
-        late = f"{self.name}: opens to {{}} only after the dead centre, where it overlaps by {{gap:length}}"
-        for way, gap in (("steam", -v), ("the exhaust", -self.exhaust_lead)):
-            yield Rule(setting, gap > _ROUNDING * r, late.replace("{}", way), {"gap": gap})
+        # the port opens before the dead centre
+        for medium, lead in (("steam", self.lead), ("the exhaust", self.exhaust_lead)):
+            gap = -lead
+            message = (
+                f"{self.name}: opens to {medium} only after the dead centre, "
+                "where it overlaps by {gap:length}"
+            )
+            yield Rule(setting, gap > _ROUNDING * r, message, {"gap": gap})
 
 
 def _settled(degrees: Number) -> Number:
@@ -273,7 +284,7 @@ class Valve(Record):
         above=0,
         example="45 mm",
         instead="travel",
-        gives=lambda given: {"travel": 2 * given["eccentricity"]},
+        gives=lambda values: {"travel": 2 * values["eccentricity"]},
     )
     steam_lap: Length = field(
         _LENGTH,
@@ -350,32 +361,38 @@ class Valve(Record):
     )
 
     def rules(self) -> Iterator[Rule]:
-        unset = self.lead is None and self.angle_of_advance is None
-        of_link = self.link is not None and self.lead is not None
-        yield Rule((), unset, "how is the valve set? Give 'lead', or 'angle_of_advance'")
-        yield Rule("lead", of_link, "of a link the lead follows; give 'angle_of_advance' instead")
-        if not (unset or of_link):
+        if self.lead is None and self.angle_of_advance is None:
+            yield Rule((), True, "how is the valve set? Give 'lead', or 'angle_of_advance'")
+        elif self.lead is not None and self.link is not None:
+            message = "of a link the lead follows; give 'angle_of_advance' instead"
+            yield Rule("lead", True, message)
+        else:
             yield from first_of(self._rules_of_motion())
 
     def _rules_of_motion(self) -> Iterator[Rule]:
+        """Yield the rules on eccentric and rod, and those on each end."""
         r = self.travel / 2
-        short = "{eccentric_rod} is no longer than the eccentricity ({r:length})"
-        yield Rule("eccentric_rod", self.eccentric_rod <= r, short, {"r": r})
+        message = "{eccentric_rod} is no longer than the eccentricity ({r:length})"
+        yield Rule("eccentric_rod", self.eccentric_rod <= r, message, {"r": r})
         setting = "angle_of_advance"
         if self.lead is not None:
-            setting, ahead = "lead", self._lap_and_lead
-            much = "lap and lead ({ahead:length}) are more than half the travel ({r:length})"
-            yield Rule("lead", ahead > r, much, {"ahead": ahead, "r": r})
+            setting = "lead"
+            A = self._lap_and_lead
+            message = "lap and lead ({A:length}) are more than half the travel ({r:length})"
+            yield Rule("lead", r < A, message, {"A": A, "r": r})
         for end in self.ends:
             yield from end.rules(setting)
 
     def rules_on(self, mechanism: Mechanism) -> Iterator[Rule]:
         """Yield that the mechanism has its dead centres elsewhere than the valve counts from."""
-        fits: Truth = bool(mechanism.slides and mechanism.has_dead_centres)
-        if fits:
+        fits: Truth = False
+        if mechanism.slides and mechanism.has_dead_centres:
             inner, outer = mechanism.dead_centres()
             fits = (abs(inner) < _AT_DEAD_CENTRE) & (abs(outer - 180.0) < _AT_DEAD_CENTRE)
-        message = "a valve needs dead centres at 0° and 180°: a slider-crank or yoke-frame without offset, or a scotch-yoke"
+        message = (
+            "a valve needs dead centres at 0° and 180°: "
+            "a slider-crank or yoke-frame without offset, or a scotch-yoke"
+        )
         yield Rule((), np.logical_not(fits), message)
 
     @property
@@ -387,29 +404,33 @@ class Valve(Record):
     @cached_property
     def eccentric(self) -> Eccentric:
         """The eccentric that moves the valve, set by its leads or by its angle."""
-        r, k = self.travel / 2, 1 / self.eccentric_rod
+        r = self.travel / 2
+        k = 1 / self.eccentric_rod
         if self.angle_of_advance is None:
             A = self._lap_and_lead
-            return Eccentric(r, A, sqrt(np.maximum((r - A) * (r + A), 0.0)), k)
+            B = sqrt(np.maximum((r - A) * (r + A), 0.0))
+            return Eccentric(r, A, B, k)
         if self.link is not None:
             return self.link.eccentric(r, self.angle_of_advance, self.eccentric_rod)
-        sin_cos = CrankAngle.of(self.angle_of_advance)
-        return Eccentric(r, r * sin_cos.sin, r * sin_cos.cos, k)
+        delta = CrankAngle.of(self.angle_of_advance)
+        return Eccentric(r, r * delta.sin, r * delta.cos, k)
 
     @property
     def sense(self) -> float:
         """σ, the way in which the slope of the eccentric rod displaces the valve."""
-        straight = (self.admission == "inside") == self.reversing_rocker
-        return 1.0 if straight else -1.0
+        is_inside = self.admission == "inside"
+        are_both_or_none = is_inside == self.reversing_rocker
+        return 1.0 if are_both_or_none else -1.0
 
     @cached_property
     def shift(self) -> Number:
         """ε in m, by which the middle of the travel is off the middle of the ports: ½(S_H + v_H − S_C − v_C) − σ g."""
         if self.lead is None:
             return 0.0
-        (S_H, S_C), (v_H, v_C) = _of_both(self.steam_lap), _of_both(self.lead)
-        nearer = self.eccentric.nearer(self.eccentric.square)
-        return (S_H + v_H - S_C - v_C) / 2 - self.sense * nearer
+        S_H, S_C = _of_both(self.steam_lap)
+        v_H, v_C = _of_both(self.lead)
+        g = self.eccentric.nearer(self.eccentric.square)
+        return (S_H + v_H - S_C - v_C) / 2 - self.sense * g
 
     @cached_property
     def ends(self) -> tuple[ValveEnd, ValveEnd]:
@@ -423,16 +444,21 @@ class Valve(Record):
         return head | crank
 
     def _end(self, key: str, number: int) -> ValveEnd:
-        turned = 1.0 - 2.0 * number
-        sense, shift = turned * self.sense, turned * self.shift
-        eccentric = self.eccentric
+        """Return an end; number: 0 of the head end, 1 of the crank end, which has −σ and −ε, half a turn later."""
+        end_sign = 1.0 - 2.0 * number
+        sigma = end_sign * self.sense
+        epsilon = end_sign * self.shift
         S = _of_both(self.steam_lap)[number]
-        if self.lead is None:
-            v = eccentric.ahead + sense * eccentric.nearer(eccentric.square) + shift - S
-        else:
-            v = _of_both(self.lead)[number]
         E = _of_both(self.exhaust_lap)[number]
-        return ValveEnd(key, 180.0 * number, eccentric, sense, shift, S, E, v, self.port_width)
+        # the lead, given or by the angle of advance: v = A + σ g + ε − S
+        if self.lead is not None:
+            v = _of_both(self.lead)[number]
+        else:
+            g = self.eccentric.nearer(self.eccentric.square)
+            v = self.eccentric.ahead + sigma * g + epsilon - S
+        return ValveEnd(
+            key, 180.0 * number, self.eccentric, sigma, epsilon, S, E, v, self.port_width
+        )
 
     def displacement(self, angle: CrankAngle) -> Number:
         """Return w in m at a crank angle."""
@@ -440,12 +466,12 @@ class Valve(Record):
 
     def timed(self, piston: Piston, mechanism: Mechanism) -> Piston:
         """Return the piston with the events of the valve in its steam cards."""
-        chambers = piston.chambers
-        cards = dict[str, Any]()
+        cards: dict[str, Any] = {}
         for end in self.ends:
-            card = chambers.get(end.key)
+            card = piston.chambers.get(end.key)
             if isinstance(card, Steam):
                 cards[end.key] = end.timed(card, mechanism)
         if piston.indicator is None or not cards:
             return piston
-        return replace(piston, indicator=replace(piston.indicator, **cards))
+        indicator = replace(piston.indicator, **cards)
+        return replace(piston, indicator=indicator)

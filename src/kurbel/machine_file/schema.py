@@ -21,7 +21,7 @@ from kurbel.declared.forms.structures import (
 from kurbel.declared.forms.values import Form, NumberForm, Schema, Text
 from kurbel.declared.keys import required
 from kurbel.declared.numerals import RATIO, WRITTEN
-from kurbel.declared.units import KINDS, MOST_ITEMS, range_of, unit_names
+from kurbel.declared.units import KINDS, range_of, unit_names
 from kurbel.machine_file.reader import ROOT, key_values
 from kurbel.quantity import Quantity
 
@@ -59,7 +59,7 @@ def _of(form: Form, definitions: Schema) -> Schema:
         if form.called and isinstance(form.item, RecordForm):
             short = _mapping(definitions[form.item.record.__name__]["properties"])
             item = {"if": {"required": ["like"]}, "then": short, "else": item}
-        return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_ITEMS}
+        return {"type": "array", "items": item, "minItems": 1, "maxItems": form.most}
     if isinstance(form, Nested):
         return _of(form.outer(), definitions)
     if isinstance(form, OneOf):

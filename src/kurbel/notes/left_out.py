@@ -20,13 +20,26 @@ _IN_EFFORT = ("gas force", "piston rod", "inertia", "weight", "friction")
 
 def missing(reasons: dict[str, str]) -> Iterator[LeftOut]:
     """Yield what of these stages is left out: those with a reason."""
-    return (LeftOut(what, why) for what, why in reasons.items() if why)
+    for stage, reason in reasons.items():
+        if reason:
+            yield LeftOut(stage, reason)
 
 
-def _speeds(machine: Machine) -> tuple[str, str]:
-    """Return why there is nothing that takes a speed, and why there is no power; "" where there is."""
-    no_speed = "no speed given" if machine.speed is None else ""
-    return no_speed, no_speed or ("" if machine.speed else "not defined at rest")
+def _no_speed(machine: Machine) -> str:
+    """Return why there is nothing that takes a speed; "" where there is."""
+    return "no speed given" if machine.speed is None else ""
+
+
+def _no_power(machine: Machine) -> str:
+    """Return why there is no power; "" where there is."""
+    if machine.speed == 0:
+        return "not defined at rest"
+    return _no_speed(machine)
+
+
+def _unless(is_present: object, reason: str) -> str:
+    """Return why something is left out; "" if it is not."""
+    return "" if is_present else reason
 
 
 # one cylinder, from its description alone
@@ -34,67 +47,70 @@ def _speeds(machine: Machine) -> tuple[str, str]:
 
 def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     """Return all that motion and forces of a cylinder can consist of, with the reason why it is left out, or ""."""
-    mechanism, motion = cylinder.mechanism, _motion_stages(machine, cylinder)
-    if not mechanism.slides:
-        acting = {"moment at the output": "" if cylinder.moment else "no moment given"}
-    else:
+    mechanism = cylinder.mechanism
+    stages = _motion_stages(machine, cylinder)
+    # the forces that act on it
+    if mechanism.slides:
         acting = _sliding_forces(machine, cylinder)
-    if all(why for what, why in acting.items() if what != "friction"):
-        idle = {"friction": "no force acts"} if cylinder.friction else {}
-        return {**motion, **acting, "forces in the crank train": "no force acts", **idle}
+    else:
+        acting = {"moment at the output": _unless(cylinder.moment, "no moment given")}
+    stages |= acting
+    absent = {force for force, reason in acting.items() if reason}
+    has_force = bool(acting.keys() - absent - {"friction"})
+    stages["forces in the crank train"] = _unless(has_force, "no force acts")
+    if not has_force:
+        if cylinder.friction:
+            stages["friction"] = "no force acts"
+        return stages
 
-    of_rod, works = {}, {}
+    # what a mechanism without a connecting rod has not
     if mechanism.slides and not mechanism.has_rod:
-        pressed = cylinder.inclination is not None and cylinder.masses
-        known = mechanism.known_across and (
-            pressed or (cylinder.friction and cylinder.friction.block)
-        )
-        of_rod = {"S" if known else "S, N": f"a {mechanism.name} has no connecting rod"}
-    # of a ram without a piston nobody expects an indicator
+        is_pressed = cylinder.inclination is not None and cylinder.masses
+        has_friction = cylinder.friction and cylinder.friction.block
+        has_guide_force = mechanism.known_across and (is_pressed or has_friction)
+        rod_forces = "S" if has_guide_force else "S, N"
+        stages[rod_forces] = f"a {mechanism.name} has no connecting rod"
+    stages |= dict(mechanism.lacks)
+
+    # work and power; of a ram without a piston nobody expects an indicator
     if mechanism.slides and (cylinder.pistons or not cylinder.ram_force):
         no_gas = acting["gas force"]
-        works = {"work": no_gas, "power": no_gas or _speeds(machine)[1]}
+        no_power = no_gas or _no_power(machine)
+        stages |= {"work": no_gas, "power": no_power}
         if machine.brake_power is not None:
-            works["comparison with brake_power"] = works["power"]
-    return {
-        **motion,
-        **acting,
-        "forces in the crank train": "",
-        **of_rod,
-        **dict(mechanism.lacks),
-        **works,
-    }
+            stages["comparison with brake_power"] = no_power
+    return stages
 
 
 def _motion_stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
+    """Return what the motion of a cylinder consists of."""
     position = "displacement" if cylinder.mechanism.slides else "angle of the output"
-    return {position: "", "velocity, acceleration": _speeds(machine)[0]}
+    return {position: "", "velocity, acceleration": _no_speed(machine)}
 
 
 def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
-    no_masses = "no masses given" if cylinder.masses is None else ""
-    no_gas = "" if cylinder.pistons else "no bore given"
-    if cylinder.pistons and not any(piston.indicator for piston in cylinder.pistons):
-        no_gas = "no indicator given"
-    rods = {
-        f"piston rod of {piston.name}"
-        if number
-        else "piston rod": "no crank_end_rod given, its area is taken as 0"
-        for number, piston in enumerate(cylinder.pistons)
-        if piston.indicator and piston.indicator.crank_end is not None and not piston.crank_end_rod
-    }
-    expected = (
-        cylinder.ram_force or cylinder.mechanism.quick_return
-    )  # of an engine nobody expects a ram
-    ram = {"ram force": "" if cylinder.ram_force else "no ram_force given"} if expected else {}
-    return {
-        "gas force": no_gas,
-        **rods,
-        **ram,
-        "inertia": no_masses or _speeds(machine)[0],
-        "weight": "no inclination given" if cylinder.inclination is None else no_masses,
-        "friction": "no friction given" if cylinder.friction is None else "",
-    }
+    """Return the forces on a mechanism whose output slides."""
+    no_masses = _unless(cylinder.masses is not None, "no masses given")
+    has_indicator = any(piston.indicator for piston in cylinder.pistons)
+    no_gas = _unless(has_indicator, "no indicator given")
+    if not cylinder.pistons:
+        no_gas = "no bore given"
+    forces = {"gas force": no_gas}
+    # pressures on a crank end need the area of its piston rod
+    for number, piston in enumerate(cylinder.pistons):
+        has_crank_end = piston.indicator and piston.indicator.crank_end is not None
+        if has_crank_end and not piston.crank_end_rod:
+            rod = f"piston rod of {piston.name}" if number else "piston rod"
+            forces[rod] = "no crank_end_rod given, its area is taken as 0"
+    # of an engine nobody expects a ram
+    if cylinder.ram_force or cylinder.mechanism.quick_return:
+        forces["ram force"] = _unless(cylinder.ram_force, "no ram_force given")
+    forces["inertia"] = no_masses or _no_speed(machine)
+    forces["weight"] = no_masses
+    if cylinder.inclination is None:
+        forces["weight"] = "no inclination given"
+    forces["friction"] = _unless(cylinder.friction is not None, "no friction given")
+    return forces
 
 
 def left_out(machine: Machine, cylinder: Cylinder) -> Iterator[LeftOut]:
@@ -109,15 +125,17 @@ def motion_left_out(machine: Machine, cylinder: Cylinder) -> Iterator[LeftOut]:
 
 def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOut]:
     """Yield everything that the computed forces of a cylinder leave out."""
-    cylinder, (_, in_noise) = forces.drive.cylinder, forces.changes_of_force
+    cylinder = forces.drive.cylinder
     yield from left_out(machine, cylinder)
     if forces.friction_work is not None and not forces.work_driving:
         yield LeftOut("friction loss as a share", "no piston drives")
-    if not forces.no_compressor and cylinder.masses and cylinder.masses.crosshead is None:
+    has_no_crosshead = cylinder.masses and cylinder.masses.crosshead is None
+    if has_no_crosshead and not forces.no_compressor:
         yield LeftOut("load on the piston rod", "no mass of the crosshead given")
-    if in_noise:
-        why = "are within the noise of the trace and no force reversal"
-        yield LeftOut(f"{in_noise} changes of the sign of P", why)
+    _, changes_in_noise = forces.changes_of_force
+    if changes_in_noise:
+        reason = "are within the noise of the trace and no force reversal"
+        yield LeftOut(f"{changes_in_noise} changes of the sign of P", reason)
 
 
 # the whole machine
@@ -125,42 +143,56 @@ def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOu
 
 def turning_stages(machine: Machine) -> dict[str, str]:
     """Return all that `kurbel flywheel` can have of the whole machine, with the reason why it is left out, or ""."""
-    speed = _speeds(machine)[1]
-    wheel = speed or ("" if machine.flywheel else "no flywheel given")
-    wanted = machine.flywheel is not None and machine.flywheel.fluctuation is not None
-    varies = machine.load is not None and machine.load.diagram is None
     effort = machine.effort
-    alone = "its swing of energy alone is given" if effort and effort.alone else ""
-    no_mean = "no mean torque given" if effort and effort.alone and effort.mean is None else ""
-    return {
-        **(
-            {"ΔE": "", "turning effort and speed over the angle": alone}
-            if alone
-            else {"turning effort, ΔE": ""}
-        ),
-        "T, W": "" if machine.cylinders else "no crank: the effort is given as a torque",
-        "power": speed or no_mean,
-        **({"J": speed} if wanted else {}),
-        "δ" if alone else "speed line, δ": wheel,
-        **({"load over the speed": wheel} if varies else {}),
-        **({"coupling": wheel} if machine.coupling else {}),
-    }
+    flywheel = machine.flywheel
+    no_power = _no_power(machine)
+    no_speed_line = no_power or _unless(flywheel, "no flywheel given")
+    is_swing_alone = bool(effort and effort.alone)
+
+    # the effort
+    stages = {"turning effort, ΔE": ""}
+    if is_swing_alone:
+        stages = {
+            "ΔE": "",
+            "turning effort and speed over the angle": "its swing of energy alone is given",
+        }
+    stages["T, W"] = _unless(machine.cylinders, "no crank: the effort is given as a torque")
+    has_no_mean = effort and effort.alone and effort.mean is None
+    stages["power"] = no_power
+    if has_no_mean:
+        stages["power"] = no_power or "no mean torque given"
+
+    # the speed
+    if flywheel is not None and flywheel.fluctuation is not None:
+        stages["J"] = no_power
+    stages["δ" if is_swing_alone else "speed line, δ"] = no_speed_line
+    if machine.load is not None and machine.load.diagram is None:
+        stages["load over the speed"] = no_speed_line
+    if machine.coupling:
+        stages["coupling"] = no_speed_line
+    return stages
 
 
 def flywheel_left_out(machine: Machine) -> Iterator[LeftOut]:
     """Yield what turning effort, flywheel and speed line of a machine leave out."""
-    of_each = [
-        [one for one in left_out(machine, cylinder) if one.what.startswith(_IN_EFFORT)]
-        for cylinder in machine.cylinders
-    ]
-    if of_each and all(of_one == of_each[0] for of_one in of_each):
-        yield from of_each[0]
+    # of the cylinders: once if all leave out the same
+    lists = [_left_out_of_effort(machine, cylinder) for cylinder in machine.cylinders]
+    are_equal = all(items == lists[0] for items in lists)
+    if lists and are_equal:
+        yield from lists[0]
     else:
-        for cylinder, of_one in zip(machine.cylinders, of_each):
-            yield from (LeftOut(f"{one.what} of {cylinder.name}", one.why) for one in of_one)
+        for cylinder, items in zip(machine.cylinders, lists):
+            for item in items:
+                yield LeftOut(f"{item.what} of {cylinder.name}", item.why)
+    # of the flywheel
     if machine.flywheel and machine.flywheel.rim and machine.flywheel.rim.sized_by:
         yield LeftOut("arms and hub of the flywheel", "J is that of the rim, whose sizes are given")
     yield from missing(turning_stages(machine))
+
+
+def _left_out_of_effort(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
+    """Return what the effort of a cylinder leaves out."""
+    return [item for item in left_out(machine, cylinder) if item.what.startswith(_IN_EFFORT)]
 
 
 def strength_left_out(machine: Machine) -> Iterator[LeftOut]:
@@ -168,28 +200,27 @@ def strength_left_out(machine: Machine) -> Iterator[LeftOut]:
     shaft = machine.crankshaft
     if shaft is None:
         return
-    upright = (
-        ""
-        if all(cylinder.inclination is not None for cylinder in machine.cylinders)
-        else "no inclination given"
-    )
-    journals = "" if shaft.journal_diameter else "no journal_diameter given"
+    # the weight of the flywheel
+    has_inclinations = all(cylinder.inclination is not None for cylinder in machine.cylinders)
+    no_weight = _unless(has_inclinations, "no inclination given")
+    if not shaft.flywheel_mass:
+        no_weight = "no flywheel_mass given"
+    # the journals; a bearing between two throws carries both
     from kurbel.solver.shaft import throws_of
 
-    # a bearing between two throws carries both
-    pressure = journals or ("" if shaft.journal_length else "no journal_length given")
-    if not pressure and len(throws_of(machine.cylinders)) > 1:
-        pressure = "bearings between two throws carry both; see kurbel bearings"
+    no_journals = _unless(shaft.journal_diameter, "no journal_diameter given")
+    no_pressure = no_journals or _unless(shaft.journal_length, "no journal_length given")
+    if not no_pressure and len(throws_of(machine.cylinders)) > 1:
+        no_pressure = "bearings between two throws carry both; see kurbel bearings"
+    has_both_stresses = shaft.allowable_bending and shaft.allowable_torsion
     yield from missing(
         {
-            "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
-            "journals": journals,
-            "pressure on the journals": pressure,
-            "p_m v": _speeds(machine)[0],
-            "safety": "" if shaft.allowable_bending else "no allowable_bending given",
-            "α₀ of the webs": ""
-            if shaft.allowable_bending and shaft.allowable_torsion
-            else "1 without k_b and k_d",
+            "flywheel weight": no_weight,
+            "journals": no_journals,
+            "pressure on the journals": no_pressure,
+            "p_m v": _no_speed(machine),
+            "safety": _unless(shaft.allowable_bending, "no allowable_bending given"),
+            "α₀ of the webs": _unless(has_both_stresses, "1 without k_b and k_d"),
         }
     )
 
@@ -198,8 +229,13 @@ def bearing_left_out(
     diameter: float | None, length: float | None, omega: Number | None
 ) -> Iterator[LeftOut]:
     """Yield what the load on a pin or bearing leaves out; omega: angular speed of the crank, None if not given."""
-    if lacks := [name for name, size in (("diameter", diameter), ("length", length)) if not size]:
-        yield LeftOut("pressure, p v", f"no {' and '.join(lacks)} given")
+    lacking = []
+    if not diameter:
+        lacking.append("diameter")
+    if not length:
+        lacking.append("length")
+    if lacking:
+        yield LeftOut("pressure, p v", f"no {' and '.join(lacking)} given")
     if omega is None:
         yield LeftOut("rubbing speed", "no speed given")
 
@@ -212,20 +248,23 @@ def film_left_out(bearing: Bearing) -> Iterator[LeftOut]:
 
 def bearings_left_out(case: Case) -> Iterator[LeftOut]:
     """Yield what the loads on all bearings leave out."""
-    machine, shaft = case.machine, case.machine.crankshaft
-    heavy = shaft and shaft.flywheel_mass and machine.cylinders[0].inclination is None
+    machine = case.machine
+    shaft = machine.crankshaft
+    has_flywheel = shaft is not None and shaft.flywheel_mass
+    has_weight = not has_flywheel or machine.cylinders[0].inclination is not None
     yield from missing(
         {
             "main bearings": case.bearings.obstacle or "",
-            "flywheel weight": "no inclination given" if heavy else "",
-            "inertia": _speeds(machine)[0],
+            "flywheel weight": _unless(has_weight, "no inclination given"),
+            "inertia": _no_speed(machine),
         }
     )
 
 
 def balance_left_out(case: Case, compare: bool = False) -> Iterator[LeftOut]:
     """Yield what the balance leaves out; compare: with the figures of first order requested."""
-    balance, machine = case.balance, case.machine
+    machine = case.machine
+    balance = case.balance
     for cylinder in machine.cylinders:
         if not cylinder.masses:
             yield LeftOut(f"inertia of {cylinder.name}", "no masses given")
@@ -235,12 +274,13 @@ def balance_left_out(case: Case, compare: bool = False) -> Iterator[LeftOut]:
             "no speed given; the counterweights do not depend on it",
         )
     if balance.free.moment is None:
-        placeless = [throw.name for throw in balance.throws if throw.place is None]
-        if any(counterweight.place is None for counterweight in balance.counterweights):
-            placeless.append("counterweights of the machine")
-        if any(balance_shaft.axial_position is None for balance_shaft in machine.balance_shafts):
-            placeless.append("balance_shafts")
-        yield LeftOut("unbalanced moments", f"no axial_position given of {', '.join(placeless)}")
+        without_position = [throw.name for throw in balance.throws if throw.place is None]
+        if any(weight.place is None for weight in balance.counterweights):
+            without_position.append("counterweights of the machine")
+        if any(shaft.axial_position is None for shaft in machine.balance_shafts):
+            without_position.append("balance_shafts")
+        reason = f"no axial_position given of {', '.join(without_position)}"
+        yield LeftOut("unbalanced moments", reason)
     if compare and balance.book is None:
         yield LeftOut(
             "figures of first order", "the book has no such formula for an offset stroke line"

@@ -11,15 +11,9 @@ def whole_machine(command: str) -> Callable[[Case], list[Subject]]:
     """Return the function of a command that has results of the whole machine, and of no part of it."""
 
     def subjects(case: Case) -> list[Subject]:
-        (found,) = case.results(command)
-        return [
-            Subject(
-                "whole machine",
-                found,
-                found.at if found.state else None,
-                warnings=of_machine(case),
-                whole=True,
-            )
-        ]
+        (results,) = case.results(command)
+        at = results.at if results.state else None
+        warnings = of_machine(case)
+        return [Subject("whole machine", results, at, warnings=warnings, whole=True)]
 
     return subjects

@@ -17,7 +17,7 @@ from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.cylinder import pin_lag
-from kurbel.machine.indicator import Card, CardLine
+from kurbel.machine.indicator import Card, CardLine, Chamber
 from kurbel.notes.plausible import cylinder_doubts, machine_doubts
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
@@ -40,11 +40,13 @@ def machine_notes(case: Case, of_forces: bool = False) -> tuple[Note, ...]:
 
     of_forces: leave out those on the speed line and on strength, which take far longer to compute than forces.
     """
-    machine, found = case.machine, list[Note]()
+    machine = case.machine
+    notes: list[Note] = []
 
     def add(texts: Iterable[str], cylinder: str | None = None, command: str = "") -> None:
-        found.extend(Note(cylinder, text, command) for text in texts)
+        notes.extend(Note(cylinder, text, command) for text in texts)
 
+    # what was given
     for cylinder in machine.cylinders:
         add(_card_warnings(cylinder), cylinder.name)
     if machine.effort:
@@ -54,25 +56,32 @@ def machine_notes(case: Case, of_forces: bool = False) -> tuple[Note, ...]:
     for cylinder in machine.cylinders:
         add(cylinder_doubts(machine, cylinder), cylinder.name)
     add(pin_warnings(machine))
-    if machine.effort or any(
-        one.pistons or one.masses or one.ram_force or one.moment for one in machine.cylinders
-    ):
-        with np.errstate(all="ignore"):
-            for forces in case.cylinders:
-                add(_trace_warnings(forces), forces.drive.name)
-            add(_brake_warnings(case))
-            for forces in case.cylinders:
-                add(as_far_as_solved(cylinder_warnings(forces), "forces"), forces.drive.name)
-            if not of_forces:
-                add(as_far_as_solved(_turning_warnings(case), "flywheel"), command="flywheel")
-                add(as_far_as_solved(_strength_warnings(case), "stress"), command="stress")
-    return tuple(dict.fromkeys(found))
+
+    # measurements and results, where there are forces
+    has_forces = machine.effort is not None or any(map(_has_force, machine.cylinders))
+    if not has_forces:
+        return tuple(dict.fromkeys(notes))
+    with np.errstate(all="ignore"):
+        for forces in case.cylinders:
+            add(_trace_warnings(forces), forces.drive.name)
+        add(_brake_warnings(case))
+        for forces in case.cylinders:
+            add(as_far_as_solved(cylinder_warnings(forces), "forces"), forces.drive.name)
+        if not of_forces:
+            add(as_far_as_solved(_turning_warnings(case), "flywheel"), command="flywheel")
+            add(as_far_as_solved(_strength_warnings(case), "stress"), command="stress")
+    return tuple(dict.fromkeys(notes))
 
 
-def as_far_as_solved(found: Iterable[str], command: str) -> list[str]:
+def _has_force(cylinder: Cylinder) -> bool:
+    """Return whether something acts on the mechanism of a cylinder."""
+    return bool(cylinder.pistons or cylinder.masses or cylinder.ram_force or cylinder.moment)
+
+
+def as_far_as_solved(warnings: Iterable[str], command: str) -> list[str]:
     """Return the warnings; without a solution, the reason; what a command refuses only that command reports."""
     try:
-        return list(found)
+        return list(warnings)
     except NoSolutionError as error:
         return [f"{error}. kurbel {command} ends with status {error.exit_status}"]
     except (KurbelError, OverflowError):
@@ -81,20 +90,21 @@ def as_far_as_solved(found: Iterable[str], command: str) -> list[str]:
 
 def by_cylinder(case: Case) -> dict[str, list[str]]:
     """Return the warnings on the forces of each cylinder by its name; those on all of them are with the last one."""
-    found: dict[str, list[str]] = {cylinder.name: [] for cylinder in case.machine.cylinders}
+    warnings: dict[str, list[str]] = {cylinder.name: [] for cylinder in case.machine.cylinders}
     last = case.machine.cylinders[-1].name
     for note in machine_notes(case, of_forces=True):
         if note.command in ("", "forces"):
-            found[note.cylinder or last].append(note.text)
-    return found
+            warnings[note.cylinder or last].append(note.text)
+    return warnings
 
 
 def of_machine(case: Case) -> Iterator[str]:
     """Yield all warnings on a machine, each after the names of its cylinders if there are several."""
     for notes in grouped(machine_notes(case), itemgetter(1)):
         names = [note.cylinder for note in notes if note.cylinder is not None]
-        text = notes[0].text
-        yield f"{together(names)}: {text}" if names and len(case.machine.cylinders) > 1 else text
+        is_named = names and len(case.machine.cylinders) > 1
+        prefix = f"{together(names)}: " if is_named else ""
+        yield prefix + notes[0].text
 
 
 # what was given: sizes and speeds
@@ -104,15 +114,16 @@ _LARGEST_FLUCTUATION = 0.25  # the largest that the books permit is 1/5, for cru
 
 def _fluctuation_warnings(machine: Machine) -> Iterator[str]:
     """Yield a warning on a required δ that is hardly a limit."""
-    wanted = machine.flywheel.fluctuation if machine.flywheel else None
-    if wanted is not None and wanted > _LARGEST_FLUCTUATION:
+    delta = machine.flywheel.fluctuation if machine.flywheel else None
+    if delta is not None and delta > _LARGEST_FLUCTUATION:
         yield (
-            f"a wanted fluctuation of {wanted:g} lets the speed vary between {1 - wanted / 2:g} and {1 + wanted / 2:g} "
+            f"a wanted fluctuation of {delta:g} lets the speed vary "
+            f"between {1 - delta / 2:g} and {1 + delta / 2:g} "
             "times its mean; those of the books are 1/5 to 1/300: is it right?"
         )
 
 
-_SAME_PLACE = 1e-9  # m
+_SAME_POSITION = 1e-9  # m
 _SAME_ANGLE = 1e-6  # degrees
 
 
@@ -121,21 +132,23 @@ def pin_warnings(machine: Machine) -> Iterator[str]:
 
     Not where the file gives the throws, as of split pins.
     """
-    placed = [
-        (cylinder.axial_position, cylinder)
-        for cylinder in machine.cylinders
-        if cylinder.axial_position is not None
-    ]
-    for (z, one), (next_z, other) in pairwise(sorted(placed, key=lambda pair: pair[0])):
-        # the throws at φ = 0
+    positions = []
+    for cylinder in machine.cylinders:
+        if cylinder.axial_position is not None:
+            positions.append((cylinder.axial_position, cylinder))
+    positions.sort(key=itemgetter(0))
+    for (z, cylinder), (next_z, neighbour) in pairwise(positions):
+        # the angle between their throws at φ = 0
         first = machine.cylinders[0]
-        apart = abs(math.remainder(pin_lag(other, first) - pin_lag(one, first), 360.0))
-        is_given = one.throw_angle is not None or other.throw_angle is not None
-        if next_z - z <= _SAME_PLACE and apart > _SAME_ANGLE and not is_given:
+        difference = pin_lag(neighbour, first) - pin_lag(cylinder, first)
+        angle = abs(math.remainder(difference, 360.0))
+        has_throw = cylinder.throw_angle is not None or neighbour.throw_angle is not None
+        if next_z - z <= _SAME_POSITION and angle > _SAME_ANGLE and not has_throw:
             yield (
-                f"{one.name} and {other.name} are at one place along the shaft, but their throws are "
-                f"{show(apart, 'angle')} apart: they share no crank pin. Two on one pin have crank positions that "
-                "differ as their bank angles do; throws of their own need an 'axial_position' each"
+                f"{cylinder.name} and {neighbour.name} are at one place along the shaft, "
+                f"but their throws are {show(angle, 'angle')} apart: they share no crank pin. "
+                "Two on one pin have crank positions that differ as their bank angles do; "
+                "throws of their own need an 'axial_position' each"
             )
 
 
@@ -150,24 +163,37 @@ _STROKE = np.linspace(0.0, 1.0, 101)
 
 def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
     """Yield notes on corrections, and warnings on cards from the wrong dead centre and exponents of no gas."""
+    least, most = _EXPONENTS
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
-            place = f"{piston.name}, {end.replace('_', ' ')}"
-            yield from (f"{place}: {text}" for text in chamber.notes)
-            least, most = _EXPONENTS
-            for value in set(chamber.exponents):
-                if not least <= value <= most:
-                    yield f"{place}: an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
-        asymmetries = [
-            _asymmetry(card) for card in piston.chambers.values() if isinstance(card, Card)
-        ]
-        # a high pressure on the same side, at the same crank angle: drawn from the same dead centre?
-        if len(asymmetries) == 2 and min(asymmetries) < -_PLAIN and max(asymmetries) > _PLAIN:
-            end, centre = ("crank end", "outer") if asymmetries[1] < 0 else ("head end", "inner")
-            yield (
-                f"{piston.name}, {end}: both ends have their high pressure at the same crank angle; a card counts from "
-                f"its own dead centre, that of the {end} from the {centre} one: is it drawn from the other?"
-            )
+            name = f"{piston.name}, {end.replace('_', ' ')}"
+            for text in chamber.notes:
+                yield f"{name}: {text}"
+            for exponent in set(chamber.exponents):
+                if not least <= exponent <= most:
+                    yield (
+                        f"{name}: an exponent of {exponent:g} is none of gas or steam, "
+                        f"{least} to {most}; is it right?"
+                    )
+        cards = [chamber for chamber in piston.chambers.values() if isinstance(chamber, Card)]
+        if len(cards) == 2:
+            yield from _dead_centre_warnings(piston.name, *cards)
+
+
+def _dead_centre_warnings(piston: str, head_card: Card, crank_card: Card) -> Iterator[str]:
+    """Yield a warning if both cards have their high pressure at the same crank angle: one is drawn from the other's end."""
+    asymmetries = [_asymmetry(head_card), _asymmetry(crank_card)]
+    are_opposite = min(asymmetries) < -_PLAIN and max(asymmetries) > _PLAIN
+    if not are_opposite:
+        return
+    end, centre = "head end", "inner"
+    if asymmetries[1] < 0:
+        end, centre = "crank end", "outer"
+    yield (
+        f"{piston}, {end}: both ends have their high pressure at the same crank angle; "
+        f"a card counts from its own dead centre, that of the {end} from the {centre} one: "
+        "is it drawn from the other?"
+    )
 
 
 def _asymmetry(card: Card) -> float:
@@ -179,9 +205,8 @@ def _asymmetry(card: Card) -> float:
 def _pressures(line: CardLine) -> Array:
     """Return the pressures of a line of a card, whichever way it is drawn, at `_STROKE` (n,)."""
     order = np.argsort(line.fractions, kind="stable")
-    pressures: Array = np.interp(
-        _STROKE, np.take(line.fractions, order), np.take(line.pressures, order)
-    )
+    fractions = np.take(line.fractions, order)
+    pressures: Array = np.interp(_STROKE, fractions, np.take(line.pressures, order))
     return pressures
 
 
@@ -212,26 +237,37 @@ def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
 
 def _brake_warnings(case: Case) -> Iterator[str]:
     """Yield a contradiction of brake and indicator."""
-    brake, indicated = case.machine.brake_power, Brake(case.machine, case.cylinders).indicated
+    brake = case.machine.brake_power
+    indicated = Brake(case.machine, case.cylinders).indicated
     if not brake or indicated is None:
         return
-    shown, taken = f"the indicated power, {show(indicated, 'power')}, is", show(brake, "power")
-    if indicated < 0 and not _TAKEN[0] <= -indicated / brake <= _TAKEN[1]:
-        much = "more than" if -indicated > brake else "far below what"
-        yield f"{shown} {much} the driven shaft takes, {taken}: check angle_zero, units and areas"
+    brake_text = show(brake, "power")
+    indicated_text = show(indicated, "power")
+    subject = f"the indicated power, {indicated_text}, is"
+    advice = "check angle_zero, units and areas"
+    # a machine that is driven
+    least, most = _TAKEN
+    is_plausible = least <= -indicated / brake <= most
+    if indicated < 0 and not is_plausible:
+        size = "more than" if -indicated > brake else "far below what"
+        yield f"{subject} {size} the driven shaft takes, {brake_text}: {advice}"
+    # an engine that gives more than it has, or hardly anything of it
     if 0 <= indicated < brake:
-        times, several = brake / indicated if indicated else math.inf, ""
-        if len(case.machine.cylinders) == 1 and _LEAST_OF_SEVERAL < times < 100:
-            count = max(2, math.ceil(times / _GOOD - 0.3))
+        ratio = brake / indicated if indicated else math.inf
+        several = ""
+        if len(case.machine.cylinders) == 1 and _LEAST_OF_SEVERAL < ratio < 100:
+            count = max(2, math.ceil(ratio / _GOOD - 0.3))
             several = (
-                f"; or is this one cylinder of {count}, say? Then write all of them: 'cylinders: {{count: {count}, "
-                "each: …}' with a firing order"
+                f"; or is this one cylinder of {count}, say? "
+                f"Then write all of them: 'cylinders: {{count: {count}, each: …}}' "
+                "with a firing order"
             )
-        yield f"{shown} below the brake power, {taken}: check angle_zero, units and areas{several}"
+        yield f"{subject} below the brake power, {brake_text}: {advice}{several}"
     if indicated > 0 and brake / indicated < _LEAST_EFFICIENCY:
+        percent = f"{100 * brake / indicated:.2g} %"
         yield (
-            f"the brake power, {taken}, is {100 * brake / indicated:.2g} % of the indicated power, "
-            f"{show(indicated, 'power')}: check bore, units and areas"
+            f"the brake power, {brake_text}, is {percent} of the indicated power, "
+            f"{indicated_text}: check bore, units and areas"
         )
 
 
@@ -256,44 +292,81 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
     """Yield what looks wrong in the forces of a cylinder; raises NoSolutionError if its friction locks it."""
     forces.refuse_locking()  # first, with an angle that does not depend on the step
     yield from valve_warnings(forces)
-    residual, traced = forces.energy_residual or 0.0, any(gas.traced for gas in forces.drive.gas)
-    if traced and abs(residual) > _COARSE:  # it shows the spacing of the samples
-        yield (
-            "the samples are too far apart: the indicated work, by the trapezoid rule, and that of T, by "
-            f"straight lines between them, differ by {abs(residual):.1%} of the energy exchanged"
-        )
-    if not traced and abs(residual) > _CLOSED:
-        yield f"the energy balance of the cycle does not close (residual {residual:.1e}); trust no figure beyond that"
+    is_traced = any(gas.traced for gas in forces.drive.gas)
+    yield from _energy_warnings(forces, is_traced)
+
+    # key values of the mechanism that have a bound
     for offer in forces.drive.mechanism.KEY_OFFERS:
-        quantity, bound = offer.quantity, offer.bound
-        found = offer.of(forces) if bound else None
-        if bound and found and found.value > bound:
-            shown, most = show(found.value, quantity.kind), show(bound, quantity.kind)
-            yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {shown} is above {most}"
+        if not offer.bound:
+            continue
+        quantity = offer.quantity
+        extreme = offer.of(forces)
+        if extreme and extreme.value > offer.bound:
+            value = show(extreme.value, quantity.kind)
+            bound = show(offer.bound, quantity.kind)
+            yield f"{quantity.text[0].lower()}{quantity.text[1:]}: {value} is above {bound}"
+
+    # a pressure that no engine has; pumps and compressors have more, and traces are judged on their own
     peak = forces.p_max.value if forces.p_max else 0.0
-    # pumps and compressors have more, and traces are judged on their own
-    if peak > _LARGEST_PEAK and not traced and (forces.mean_pressure or 0.0) > 0:
+    is_engine = (forces.mean_pressure or 0.0) > 0
+    if peak > _LARGEST_PEAK and is_engine and not is_traced:
         most = show(_LARGEST_PEAK, "pressure")
-        yield f"a pressure of {show(peak, 'pressure')} is more than engines have, at most {most}; is its unit right?"
-    loads = None if forces.no_compressor else forces.rod_loads
-    angle, ratio = (loads.reversal_longest, loads.reversal_ratio) if loads else (None, None)
+        yield (
+            f"a pressure of {show(peak, 'pressure')} is more than engines have, at most {most}; "
+            "is its unit right?"
+        )
+    if not forces.no_compressor:
+        yield from _reversal_warnings(forces)
+    yield from _lifting_warnings(forces)
+
+
+def _energy_warnings(forces: CylinderForces, is_traced: bool) -> Iterator[str]:
+    """Yield that work and energy of a cycle differ; is_traced: the spacing of samples may be the reason."""
+    residual = forces.energy_residual or 0.0
+    if is_traced and abs(residual) > _COARSE:
+        yield (
+            "the samples are too far apart: the indicated work, by the trapezoid rule, "
+            "and that of T, by straight lines between them, "
+            f"differ by {abs(residual):.1%} of the energy exchanged"
+        )
+    if not is_traced and abs(residual) > _CLOSED:
+        yield (
+            f"the energy balance of the cycle does not close (residual {residual:.1e}); "
+            "trust no figure beyond that"
+        )
+
+
+def _reversal_warnings(forces: CylinderForces) -> Iterator[str]:
+    """Yield that the rod load of a compressor does not reverse as long and as far as API 618 requires."""
+    loads = forces.rod_loads
+    if loads is None:
+        return
+    angle = loads.reversal_longest
+    ratio = loads.reversal_ratio
     if angle == 0:
         yield "the rod load never reverses: no oil reaches the loaded side of the crosshead pin"
-    elif (
-        angle is not None
-        and ratio is not None
-        and (angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1])
-    ):
+        return
+    if angle is None or ratio is None:
+        return
+    least_angle, least_ratio = _LEAST_REVERSAL
+    if angle < least_angle or ratio < least_ratio:
         yield (
-            f"the rod load reverses over {angle:.3g} deg, to {100 * ratio:.3g} % of the larger load; API 618 "
-            "requires 15 deg and 3 %"
+            f"the rod load reverses over {angle:.3g} deg, to {100 * ratio:.3g} % "
+            "of the larger load; API 618 requires 15 deg and 3 %"
         )
+
+
+def _lifting_warnings(forces: CylinderForces) -> Iterator[str]:
+    """Yield that the crosshead lifts off the lower guide, and what the other sense of rotation would do."""
     machine = forces.drive.machine
-    if machine.rotation and forces.lifted:
-        other = "under" if machine.rotation == "over" else "over"
-        turning_back = CylinderForces(replace(machine, rotation=other), forces.drive.cylinder)
-        turned = f"turning {other} it would {_on_guide(turning_back, 'rest', 'lift')}"
-        yield f"Turning {machine.rotation}, the crosshead {_on_guide(forces, 'rests', 'lifts')}; {turned} (R p. 602)"
+    if not machine.rotation or not forces.lifted:
+        return
+    reverse = "under" if machine.rotation == "over" else "over"
+    reversed_forces = CylinderForces(replace(machine, rotation=reverse), forces.drive.cylinder)
+    yield (
+        f"Turning {machine.rotation}, the crosshead {_on_guide(forces, 'rests', 'lifts')}; "
+        f"turning {reverse} it would {_on_guide(reversed_forces, 'rest', 'lift')} (R p. 602)"
+    )
 
 
 # the guide of a horizontal machine of known sense of rotation, R p. 602
@@ -303,24 +376,36 @@ _MOST_SPANS = 4
 
 def guide_notes(case: Case) -> Iterator[str]:
     """Yield of which cylinders the crosshead rests on the lower guide."""
-    sense, resting = case.machine.rotation, list[str]()
-    for forces in case.cylinders if sense else ():
+    rotation = case.machine.rotation
+    if not rotation:
+        return
+    resting = []
+    for forces in case.cylinders:
         drive = forces.drive
-        guided = drive.down and drive.mechanism.guided and drive.mechanism.has_rod
-        if guided and forces.extremes_of("N") is not None and not forces.lifted:
+        has_lower_guide = drive.down and drive.mechanism.guided and drive.mechanism.has_rod
+        if has_lower_guide and forces.extremes_of("N") is not None and not forces.lifted:
             resting.append(drive.name)
     if resting:
         name = f"{together(resting)}: " if len(case.cylinders) > 1 else ""
-        yield f"{name}Turning {sense}, the crosshead rests on the lower guide all round (R p. 602)."
+        yield (
+            f"{name}Turning {rotation}, "
+            "the crosshead rests on the lower guide all round (R p. 602)."
+        )
 
 
 def _on_guide(forces: CylinderForces, rests: str, lifts: str) -> str:
     """Return on which guide the crosshead rests, or where it lifts off the lower one."""
-    lifted, cycle = forces.lifted, forces.drive.cycle
-    if not lifted or lifted[0][1] - lifted[0][0] >= cycle:
-        return f"{rests} on the {'upper' if lifted else 'lower'} guide all round"
-    spans = ", ".join(f"from {start:.4g} to {end % cycle:.4g} deg" for start, end in lifted)
-    return f"{lifts} off the lower guide {spans if len(lifted) <= _MOST_SPANS else f'{len(lifted)} times a cycle'}"
+    spans = forces.lifted
+    cycle = forces.drive.cycle
+    if not spans:
+        return f"{rests} on the lower guide all round"
+    start, end = spans[0]
+    if end - start >= cycle:
+        return f"{rests} on the upper guide all round"
+    if len(spans) > _MOST_SPANS:
+        return f"{lifts} off the lower guide {len(spans)} times a cycle"
+    angles = ", ".join(f"from {start:.4g} to {end % cycle:.4g} deg" for start, end in spans)
+    return f"{lifts} off the lower guide {angles}"
 
 
 _USUAL_RATIO = 4.0, 5.0
@@ -330,43 +415,49 @@ _STILL = 1.2
 
 def rod_ratio_notes(case: Case) -> Iterator[str]:
     """Yield L/R of machines beyond the 4 to 5 of the books for their kind (R Zusammenstellung 112, Blau)."""
+    if case.machine.locomotive:  # Redtenbacher has 6 for locomotives
+        return
     least, most = _USUAL_RATIO
-    for forces in (
-        case.cylinders if not case.machine.locomotive else ()
-    ):  # Redtenbacher has 6 for locomotives
+    for forces in case.cylinders:
         mechanism = forces.drive.mechanism
-        ratio = 1 / mechanism.lam if mechanism.has_rod and mechanism.lam > 0 else math.inf
-        if (
-            not least - 1e-9 <= ratio <= most + 1e-9
-            and ratio < math.inf
-            and (kind := _kind_of(forces))
-        ):
-            locomotives = (
-                "; locomotives have 6 to 11" if kind == "steam engines" and ratio > most else ""
-            )
-            yield f"{forces.drive.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}{locomotives}."
+        has_finite_rod = mechanism.has_rod and mechanism.lam > 0
+        if not has_finite_rod:
+            continue
+        ratio = 1 / mechanism.lam
+        is_usual = least - 1e-9 <= ratio <= most + 1e-9
+        kind = "" if is_usual else _kind_of(forces)
+        if not kind:
+            continue
+        locomotives = ""
+        if kind == "steam engines" and ratio > most:
+            locomotives = "; locomotives have 6 to 11"
+        yield (
+            f"{forces.drive.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}"
+            f"{locomotives}."
+        )
 
 
 def _kind_of(forces: CylinderForces) -> str:
     """Return the kind of machine, if it is one that the books on L/R have; '' for compressors and trunk pistons."""
-    pistons, ambient = forces.drive.cylinder.pistons, forces.drive.machine.ambient
-    chambers = [chamber for piston in pistons for chamber in piston.chambers.values()]
-    lifts = [
-        0.0 if one.indicator and one.indicator.absolute else ambient
-        for one in pistons
-        for _ in one.chambers
-    ]
-    if any(one.by_steam or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)):
-        return "steam engines"
-    if (forces.work or 0.0) < 0:
-        return (
-            "pumps"
-            if all(isinstance(chamber, Card) and chamber.flat for chamber in chambers)
-            else ""
+    drive = forces.drive
+    chambers: list[Chamber] = []
+    has_crosshead = False
+    for piston in drive.cylinder.pistons:
+        has_crosshead = (
+            has_crosshead or bool(piston.crank_end_rod) or "crank_end" in piston.chambers
         )
-    crosshead = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
-    burns = any(chamber.burns or forces.drive.cycle > 360 for chamber in chambers)
-    return "gas engines with a crosshead" if crosshead and burns else ""
+        # what makes its pressures absolute
+        is_absolute = piston.indicator is not None and piston.indicator.absolute
+        lift = 0.0 if is_absolute else drive.machine.ambient
+        for chamber in piston.chambers.values():
+            if chamber.by_steam or _drawn_by_steam(chamber, lift):
+                return "steam engines"
+            chambers.append(chamber)
+    if (forces.work or 0.0) < 0:
+        are_flat = all(isinstance(chamber, Card) and chamber.flat for chamber in chambers)
+        return "pumps" if are_flat else ""
+    burns = any(chamber.burns or drive.cycle > 360 for chamber in chambers)
+    return "gas engines with a crosshead" if has_crosshead and burns else ""
 
 
 def _drawn_by_steam(card: object, lift: float) -> bool:
@@ -377,10 +468,15 @@ def _drawn_by_steam(card: object, lift: float) -> bool:
     """
     if not isinstance(card, Card) or len(card.lines) != 2 or card.flat:
         return False
-    outward, back = (_pressures(line) + lift for line in card.lines)
-    most, exhaust = max(card.lines[0].pressures) + lift, card.lines[1].pressures[0] + lift
-    held, released, halfway = outward[5], outward[-1], back[50]
-    return bool(max(0.85 * most, released, _STILL * exhaust) < held and halfway < _STILL * exhaust)
+    outward_line, return_line = card.lines
+    # the outstroke: the pressure is held over a twentieth of the stroke, and falls before its end
+    outward = _pressures(outward_line) + lift
+    most = max(outward_line.pressures) + lift
+    exhaust = return_line.pressures[0] + lift
+    is_admitted = max(0.85 * most, outward[-1], _STILL * exhaust) < outward[5]
+    # the return stroke: half the way back it still exhausts
+    halfway = (_pressures(return_line) + lift)[50]
+    return bool(is_admitted and halfway < _STILL * exhaust)
 
 
 # results of the whole machine
@@ -398,59 +494,71 @@ def _turning_warnings(case: Case) -> Iterator[str]:
     machine = case.machine
     if machine.efficiency == 1 and not any((machine.flywheel, machine.load, machine.coupling)):
         return
-    turning = case.flywheel
-    if turning.deficit is not None:
-        word = "more" if turning.deficit > 0 else "less"
+    flywheel = case.flywheel
+
+    # the effort
+    if flywheel.deficit is not None:
+        word = "more" if flywheel.deficit > 0 else "less"
+        effort = show(flywheel.M_mean, "torque")
+        resistance = show(flywheel.M_mean - flywheel.deficit, "torque")
+        difference = show(abs(flywheel.deficit), "torque")
         yield (
-            f"mean effort {show(turning.M_mean, 'torque')} and mean resistance "
-            f"{show(turning.M_mean - turning.deficit, 'torque')} differ: the machine does not run steadily; "
-            f"E and ω assume {show(abs(turning.deficit), 'torque')} {word} resistance throughout"
+            f"mean effort {effort} and mean resistance {resistance} differ: "
+            "the machine does not run steadily; "
+            f"E and ω assume {difference} {word} resistance throughout"
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
         yield "both 'efficiency' and 'friction' are given: friction is counted twice"
-    if (
-        turning.J_needed is not None
-        and turning.delta_needed is not None
-        and turning.misses_wanted_delta
-    ):
-        better = (
-            ""
-            if turning.J_exact is None
-            else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
-        )
+
+    # the speed
+    has_delta = flywheel.J_needed is not None and flywheel.delta_needed is not None
+    if has_delta and flywheel.misses_wanted_delta:
+        advice = ""
+        if flywheel.J_exact is not None:
+            advice = f"; J = {show(flywheel.J_exact, 'inertia')} gives the wanted one"
         yield (
-            f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
-            f"{turning.delta_needed:.4g}{better}"
+            f"with J = ΔE/(δ ω²) = {show(flywheel.J_needed, 'inertia')} of the books "
+            f"the speed line has δ = {flywheel.delta_needed:.4g}{advice}"
         )
-    if turning.multiplier is not None and turning.multiplier > 1:
-        more, least = turning.multiplier - 1, "at least " if turning.multiplier > _BEYOND else ""
-        grows = (
-            f"by {more:.2g} of itself"
-            if more < _SLOWLY
-            else f"{least}{turning.multiplier:.4g} times"
+    multiplier = flywheel.multiplier
+    if multiplier is not None and multiplier > 1:
+        growth = f"{multiplier:.4g} times"
+        if multiplier - 1 < _SLOWLY:
+            growth = f"by {multiplier - 1:.2g} of itself"
+        elif multiplier > _BEYOND:
+            growth = f"at least {growth}"
+        yield f"unstable: a disturbance of the speed grows {growth} in every cycle"
+    if flywheel.load_ignored:
+        yield (
+            "the mean torque is zero, so that a load proportional to it "
+            "does not govern the speed; it is left out"
         )
-        yield f"unstable: a disturbance of the speed grows {grows} in every cycle"
-    if turning.load_ignored:
-        yield "the mean torque is zero, so that a load proportional to it does not govern the speed; it is left out"
-    if turning.elastic:
-        for near in turning.elastic.resonances:
+
+    # the coupling
+    elastic = flywheel.elastic
+    if elastic:
+        for resonance in elastic.resonances:
             yield (
-                f"resonance: harmonic {near.order:g} of the torque ({show(near.amplitude, 'torque')}) is "
-                f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
-                f"amplified {near.amplification:.3g} times"
+                f"resonance: harmonic {resonance.order:g} of the torque "
+                f"({show(resonance.amplitude, 'torque')}) is "
+                f"{100 * abs(resonance.distance):.2g} % from the natural order "
+                f"{elastic.natural_order:.4g} and is "
+                f"amplified {resonance.amplification:.3g} times"
             )
-    if turning.elastic and turning.elastic.delta > _LINEAR:
-        yield "the speed varies so much that the coupling, computed at nearly uniform rotation, is only a rough guide"
+        if elastic.delta > _LINEAR:
+            yield (
+                "the speed varies so much that the coupling, "
+                "computed at nearly uniform rotation, is only a rough guide"
+            )
+
+    # the rim
     rim = machine.flywheel.rim if machine.flywheel else None
-    if (
-        rim
-        and rim.allowable_tension
-        and turning.rim_stress
-        and turning.rim_stress > rim.allowable_tension
-    ):
+    stress = flywheel.rim_stress
+    allowable = rim.allowable_tension if rim else None
+    if stress and allowable and stress > allowable:
         yield (
-            f"the hoop stress of the rim, {show(turning.rim_stress, 'stress')}, exceeds the allowable "
-            f"{show(rim.allowable_tension, 'stress')}"
+            f"the hoop stress of the rim, {show(stress, 'stress')}, exceeds the allowable "
+            f"{show(allowable, 'stress')}"
         )
 
 
@@ -481,21 +589,19 @@ def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> 
     """
     if pressure_velocity is None:
         return True, ""
-    shown, shells = (
-        convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2"),
-        _SHELLS[metal or ""],
-    )
-    bound, verdict = next(shell for shell in shells if shown <= shell[0])
+    value = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2")
+    shells = _SHELLS[metal or ""]
+    bound, verdict = next(shell for shell in shells if value <= shell[0])
+    is_permitted = bound == shells[0][0]
     symbol = "k_v = p_m v" if metal else "p_m v"
-    return bound == shells[0][0], f"Crank pin: {symbol} = {shown:.3g} kgf m/(cm² s); {verdict}."
+    return is_permitted, f"Crank pin: {symbol} = {value:.3g} kgf m/(cm² s); {verdict}."
 
 
 def shells(case: Case) -> tuple[bool, str]:
     """Return the verdict on the shells of a machine whose crankshaft is examined."""
     shaft = case.machine.crankshaft
-    return shell_verdict(
-        case.stress.pressure_velocity("pin"), shaft.bearing_metal if shaft else None
-    )
+    metal = shaft.bearing_metal if shaft else None
+    return shell_verdict(case.stress.pressure_velocity("pin"), metal)
 
 
 def rods_on_pin(spacing: float | None) -> str:
@@ -509,13 +615,14 @@ def rods_on_pin(spacing: float | None) -> str:
 
 
 def _strength_warnings(case: Case) -> Iterator[str]:
+    """Yield that the shells of the crank pin are loaded more than their metal permits."""
     if case.machine.strength_obstacle:
         return
     from kurbel.solver.shaft import strength_obstacle
 
     if not strength_obstacle(case.machine):
-        cool, verdict = shells(case)
-        if not cool:
+        is_permitted, verdict = shells(case)
+        if not is_permitted:
             yield verdict
 
 
@@ -525,18 +632,19 @@ _ROUNDED = 0.05
 
 def bearing_warnings(case: Case) -> Iterator[str]:
     """Yield that the throws are not as far apart as their bearings put them."""
-    shaft, cylinders = case.machine.crankshaft, case.machine.cylinders
-    if (
-        shaft is None
-        or shaft.overhung
-        or any(cylinder.axial_position is None for cylinder in cylinders)
-    ):
+    shaft = case.machine.crankshaft
+    if shaft is None or shaft.overhung:
         return
-    throws, apart = case.bearings.line.throws if case.bearings.line else (), shaft.a + shaft.b
-    given = [float(following.place - one.place) for one, following in pairwise(throws)]
-    wrong = [one for one in given if abs(one - apart) > _ROUNDED * apart]
-    if wrong:
-        yield (
-            f"throws {show(wrong[0], 'length')} apart along the shaft do not fit bearings between them, by which they "
-            f"are a + b = {show(apart, 'length')} apart; the loads are those of a and b"
-        )
+    if any(cylinder.axial_position is None for cylinder in case.machine.cylinders):
+        return
+    throws = case.bearings.line.throws if case.bearings.line else ()
+    fitting = shaft.a + shaft.b
+    for throw, next_throw in pairwise(throws):
+        distance = float(next_throw.place - throw.place)
+        if abs(distance - fitting) > _ROUNDED * fitting:
+            yield (
+                f"throws {show(distance, 'length')} apart along the shaft do not fit "
+                "bearings between them, by which they are "
+                f"a + b = {show(fitting, 'length')} apart; the loads are those of a and b"
+            )
+            return

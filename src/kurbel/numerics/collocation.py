@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
-from typing import NamedTuple, Protocol
+from functools import cached_property, lru_cache
+from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags
+from kurbel.arrays import Array, ComplexArray, Flags
 from kurbel.numerics.lobatto import chebyshev, integral_of_series, rule
 from kurbel.numerics.pieces import TAIL, Pieces, joined_pieces
 
@@ -32,8 +32,14 @@ _STANDING = 0.05
 """Share of the kinetic energy at y = 0 below which the body is at rest at the end of its return."""
 _AT_ONCE = 4_000_000
 """Numbers of the matrices of the pieces that are solved together."""
+_CONSTANT = 1e-13
+"""Of the largest eigenvalue of a matrix: one that is smaller is zero but for rounding."""
 _OPEN = 1e-11
 """A singular value that is smaller leaves a direction open: that of rounding is 1e-13."""
+
+
+R = TypeVar("R", Array, ComplexArray)
+"""Rows of numbers, real or complex."""
 
 
 class Unsettled(Exception):
@@ -48,23 +54,62 @@ class Unsettled(Exception):
         self.enough, self.degrees = enough, degrees
 
 
+class Modal(NamedTuple):
+    """The modes of a real matrix A (m, m), of each conjugate pair one: A = Re columns · diag(eigenvalues) · rows.
+
+    eigenvalues (q,), per radian; columns (m, q); rows (q, m). What the modes have is z = rows · y, y = Re columns · z.
+    """
+
+    eigenvalues: ComplexArray
+    columns: ComplexArray
+    rows: ComplexArray
+
+    @classmethod
+    def of(cls, matrix: Array, sizes: Array) -> Modal:
+        """Return those of a matrix; sizes (m,): of the unknowns in which it is nearly skew, and its modes orthogonal.
+
+        Raises LinAlgError where it has not enough of them.
+        """
+        eigenvalues, vectors = np.linalg.eig(matrix * sizes / sizes[:, None])
+        columns = np.asarray(sizes[:, None] * vectors, dtype=complex)
+        rows = np.asarray(np.linalg.inv(vectors) / sizes, dtype=complex)
+        # of a pair with z and its conjugate the real part of one counts twice
+        is_upper = eigenvalues.imag >= 0
+        pairs = np.where(eigenvalues.imag > 0, 2.0, 1.0)
+        # what neither swings nor decays, such as rotation, is exactly constant
+        is_constant = np.abs(eigenvalues) <= _CONSTANT * np.abs(eigenvalues).max()
+        kept = np.asarray(eigenvalues, dtype=complex)
+        kept[is_constant] = 0.0
+        counted = np.asarray(columns * pairs, dtype=complex)
+        return cls(kept[is_upper], counted[:, is_upper], rows[is_upper])
+
+
 class Equation(Protocol):
     """y′ = f(φ, y), per radian, with m unknowns y of about one size for each of many machines.
 
     bounded: the unknown that must stay above −height; the equation is the tamer the larger the height. None where
-    nothing bounds one. noise (machines,): smaller parts of y are not refined.
+    nothing bounds one. noise (machines,): smaller parts of y are not refined. modal: the modes of ∂f/∂y at y = 0, of
+    one machine whose ∂f/∂y hardly varies; None where each piece is solved for all unknowns together.
     """
 
     unknowns: int
     bounded: int | None
     noise: Array
 
+    @property
+    def modal(self) -> Modal | None:
+        """The modes, or None."""
+        ...
+
     def known(self, pieces: Pieces) -> Array:
         """Return what depends on the angle alone at the Lobatto nodes, (q, nodes, pieces), the height last."""
         ...
 
-    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
-        """Return f (m, k, pieces) and ∂f/∂y (m, m, k, pieces) at y (m, k, pieces), where `known` is (q, k, pieces)."""
+    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array | None]:
+        """Return f (m, k, pieces) and ∂f/∂y (m, m, k, pieces) at y (m, k, pieces), where `known` is (q, k, pieces).
+
+        The second is not needed, and may be None, where the modes of the equation are known.
+        """
         ...
 
 
@@ -95,6 +140,12 @@ class Radau:
         of_halves = np.concatenate((positions - 1, positions + 1)) / 2
         self.halving = chebyshev(of_halves, count + 1) @ self.series
         self.to_lobatto = chebyshev(rule(count).nodes, count + 1) @ self.series
+
+    @cached_property
+    def modes(self) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """The eigenvalues of `area` (k,), the vectors in columns (k, k), and the inverse of these."""
+        eigenvalues, vectors = np.linalg.eig(self.area)
+        return eigenvalues, vectors, np.linalg.inv(vectors)
 
 
 radau = lru_cache(Radau)
@@ -141,6 +192,7 @@ class Periodic(NamedTuple):
         y = np.where(self.pieces.of(self.failed), 0.0, self.y)
         system = _System(self.equation, self.pieces, np.zeros(self.pieces.count))
         _, lack, stiffness = system.lacking(y)
+        assert stiffness is not None
         _, gains = system.inside(lack, stiffness)
         unit = np.eye(len(y))
         padded_gains = system.padded(gains[-1], unit)
@@ -315,8 +367,8 @@ class _System:
         self.after = np.arange(1, len(self._row) + 1)
         self.after[starts + lengths - 1] = starts
 
-    def lacking(self, y: Array) -> tuple[Array, Array, Array]:
-        """Return what the equations lack at starts (m, pieces) and nodes (m, k, pieces), and half ∂f/∂y there.
+    def lacking(self, y: Array) -> tuple[Array, Array, Array | None]:
+        """Return what the equations lack at starts (m, pieces) and nodes (m, k, pieces), and half ∂f/∂y there, if given.
 
         At the start of a piece that is what the end before it has more, at its nodes what the rate makes of the start.
         """
@@ -325,7 +377,8 @@ class _System:
         jump = np.empty_like(start)
         jump[:, self.after] = y[:, -1] - start[:, self.after]
         lack = y[:, :1] + self.half * (self.rule.area @ rate) - y[:, 1:]
-        return jump, lack, self.half * slope
+        stiffness = None if slope is None else self.half * slope
+        return jump, lack, stiffness
 
     def inside(self, lack: Array, stiffness: Array) -> tuple[Array, Array]:
         """Return the changes at the nodes (k, pieces, m) that make up a lack, and those per change at the start."""
@@ -412,15 +465,18 @@ class _System:
             previous = np.where(share == 1, size, np.inf)
         return y, is_settled
 
-    def _size_of_lack(self, lacking: tuple[Array, Array, Array]) -> Array:
+    def _size_of_lack(self, lacking: tuple[Array, Array, Array | None]) -> Array:
         """Return the root of the sum of the squares of what the equations of every machine lack, (machines,)."""
         jump, lack, _ = lacking
         squares = np.square(jump).sum(axis=0) + np.square(lack).sum(axis=(0, 1))
         return np.sqrt(np.bincount(self.pieces.machine, squares, minlength=self.pieces.count))
 
-    def _newton_step(self, y: Array, lacking: tuple[Array, Array, Array]) -> Array:
+    def _newton_step(self, y: Array, lacking: tuple[Array, Array, Array | None]) -> Array:
         """Return Newton's step of y, (m, k + 1, pieces)."""
         jump, lack, stiffness = lacking
+        if self.equation.modal:
+            return self._modal_step(self.equation.modal, jump, lack)
+        assert stiffness is not None
         # in a piece step = response + gain · step at its start; its last node starts the next piece
         response, gain = self.inside(lack, stiffness)
         more = self.padded(response[-1] + jump[:, self.after].T, np.zeros(len(y)))
@@ -429,8 +485,26 @@ class _System:
         nodes = response + (gain @ start[:, :, None])[..., 0]
         return np.concatenate((start[None], nodes)).transpose(2, 0, 1)
 
+    def _modal_step(self, modal: Modal, jump: Array, lack: Array) -> Array:
+        """Return Newton's step with ∂f/∂y at y = 0, mode by mode; each is an equation of one unknown."""
+        # (1 − half λ area)⁻¹ of a mode and a piece, in the eigenvectors of the area
+        areas, vectors, inverse = self.rule.modes
+        shares = np.multiply.outer(np.multiply.outer(modal.eigenvalues, areas), self.half)
+        resolvent = 1 / (1 - shares)
+        lack_of_modes = (modal.rows @ lack.reshape(len(lack), -1)).reshape(shares.shape)
+        response = vectors @ (resolvent * (inverse @ lack_of_modes))
+        gain = vectors @ (resolvent * inverse.sum(axis=1)[:, None])
 
-def around_the_cycle(gain: Array, more: Array) -> Array:
+        # the starts, each mode as a machine of its own
+        more = response[:, -1] + (modal.rows @ jump)[:, self.after]
+        start = around_the_cycle(gain[:, -1, :, None, None], more[:, :, None])[..., 0]
+        nodes = response + gain * start[:, None]
+        changes = np.concatenate((start[:, None], nodes), axis=1)
+        step = (modal.columns @ changes.reshape(len(changes), -1)).real
+        return step.reshape(len(lack), *changes.shape[1:])
+
+
+def around_the_cycle(gain: R, more: R) -> R:
     """Return x (n, k, m) with x_{i+1} = gain_i x_i + more_i, x_k being x_0; gain (n, k, m, m), more (n, k, m).
 
     A single unknown that grows along the cycle is followed backward, where it decays. What the equations leave open is
@@ -454,7 +528,7 @@ def around_the_cycle(gain: Array, more: Array) -> Array:
     return np.where(is_finite, np.where(grows, backward, forward), np.nan)
 
 
-def _paired(gain: Array, more: Array) -> Array:
+def _paired(gain: R, more: R) -> R:
     """Return the same, forward: pieces are joined in pairs until one is left, whose start is its end."""
     count, size = more.shape[1:]
     if count == 1:

@@ -62,7 +62,7 @@ _LABELS = {
         "friction_loss": "Friction loss",
         "friction_force_mean": "Mean crosshead friction",
     },
-    "bearings": {"load_max": "Largest bearing load"},
+    "bearings": {"load_max": "Largest bearing load", "film_thickness_min": "Thinnest oil film"},
     "stress": {"safety_pin_min": "Safety of the crank pin"},
     "balance": {
         "F_free_max": "Largest unbalanced force",
@@ -94,15 +94,25 @@ _USUAL = (
     "natural_frequency c_m c_max b_max M_min stroke"
 )
 _KINDS = {
-    "engine": "power_shaft mean_pressure p_max P_peak M_max delta safety_pin_min load_max F_free_max dE",
-    "steam engine": "power_shaft mean_pressure p_max flow_mean P_peak M_max delta dE load_max",
-    "pump": "flow_mean power_shaft p_max volume_fluctuation P_peak M_max load_max dE",
-    "compressor": "capacity power_shaft discharge_temperature p_max rod_compression_max reversal_angle M_max load_max",
+    "engine": (
+        "power_shaft mean_pressure p_max P_peak M_max delta safety_pin_min film_thickness_min "
+        "load_max F_free_max dE"
+    ),
+    "steam engine": (
+        "power_shaft mean_pressure p_max flow_mean P_peak M_max delta film_thickness_min dE load_max"
+    ),
+    "pump": (
+        "flow_mean power_shaft p_max volume_fluctuation P_peak M_max film_thickness_min load_max dE"
+    ),
+    "compressor": (
+        "capacity power_shaft discharge_temperature p_max rod_compression_max reversal_angle M_max "
+        "film_thickness_min load_max"
+    ),
     "ram": "stroke time_ratio c_work_max c_return_max power_shaft P_peak M_max delta J",
     "linkage": "swing time_ratio theta_dot_max theta_ddot_max transmission_min power_shaft M_max dE",
     "shaft line": "natural_frequency M_vibratory tau_vibratory vibration_loss",
     "effort": "power_shaft M_mean M_max M_min dE delta J M_coupling_max natural_frequency",
-    "masses": "P_peak M_max load_max F_free_max M_free_max c_m c_max b_max",
+    "masses": "P_peak M_max film_thickness_min load_max F_free_max M_free_max c_m c_max b_max",
 }
 """Kind of machine -> its most informative key values, in order; then follow those of `_USUAL`."""
 _OF_FORCES = (
@@ -110,7 +120,7 @@ _OF_FORCES = (
     "P_max P_min N_max N_min T_max T_min"
 )
 """What the first selection of `kurbel forces` has; after the most informative key values on the first page."""
-_SMALLEST = ("safety_pin_min", "reversal_angle", "transmission_min")
+_SMALLEST = ("safety_pin_min", "reversal_angle", "transmission_min", "film_thickness_min")
 """Key values of which the smallest of all parts is shown, else the largest."""
 _MOST_FACTS = 8
 _CLAUSE = re.compile(r"[:;,(]| over the cycle")

@@ -11,7 +11,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
-from kurbel.pictures.picture_source import CurveFormula, Source, curve, level
+from kurbel.pictures.picture_source import AROUND, CurveFormula, Source, curve, level
 from kurbel.solver.effort import Term
 from kurbel.solver.figures import AtAngles
 from kurbel.solver.state import State
@@ -173,7 +173,7 @@ def _on_crank_1(source: Source, name: Words, torque: Array) -> CurveFormula:
 
 def throw_stress(source: Source) -> Iterator[Panel]:
     """Largest combined stress of each part of the crank throw over the cycle."""
-    from kurbel.solver.chapters.stress import PARTS
+    from kurbel.solver.chapters.stress_places import PARTS
 
     names = {}
     for part, (_, words) in PARTS.items():
@@ -374,6 +374,25 @@ def polar_loads(source: Source) -> Iterator[Panel]:
         panels.append(panel)
     wide = [panel for panel in panels if _slenderness(panel) < _SLENDEREST]
     yield from wide or panels[:1]
+
+
+def journal_orbit(source: Source) -> Iterator[Panel]:
+    """Path of the middle of every pin and journal in its shell, as a share of the radial clearance, seen from the
+    shell. On the circle they would touch."""
+    if not source.having("eccentricity"):
+        return
+    farthest = "eccentricity_max", source.extreme("eccentricity_max")
+    title = _FRAMES[f"load_{source.results.shell}"]
+    name = source.words("eccentricity")
+    panel = source.locus(_middle_of_journal, "eccentricity", name, title, largest=farthest)
+    axis = Axis(name, "ratio")
+    shell = curve("faint", *AROUND, name=Words("c"))
+    yield panel._replace(x=axis, y=axis, curves=(*panel.curves, shell))
+
+
+def _middle_of_journal(state: BearingColumns) -> ComplexArray:
+    """Return ε."""
+    return state["eccentricity"] * np.exp(1j * np.radians(state["film_direction"]))
 
 
 def _tip_of_load(frame: str, state: BearingColumns) -> ComplexArray:

@@ -11,14 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.accuracy import stiff, trials
-from kurbel.accuracy.extremes import all_cases, table, verdicts
+from kurbel.accuracy.extremes import all_cases, table_lines, verdicts
 from kurbel.machine import Machine
 from kurbel.report.commands import report_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame, provenance
 from kurbel.tables.tables import Column, LeftOut, Part, PlaceTable, Report
 
-Loads = Callable[[str], Machine]
+MachineReader = Callable[[str], Machine]
 """Reads the text of a machine file; passed in by the command line, since reports do not import the reader."""
 OnProgress = Callable[[str, float], None]
 """Called with what is computed, and the completed share."""
@@ -42,7 +42,7 @@ _SPEED_NOTE = (
 
 
 def accuracy_report(
-    machine: Machine | None, quick: bool, loads: Loads, progress: OnProgress | None = None
+    machine: Machine | None, quick: bool, loads: MachineReader, progress: OnProgress | None = None
 ) -> Report:
     """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and repeats.
 
@@ -84,13 +84,13 @@ class Scene(NamedTuple):
     speed: tuple[str, ...]
 
 
-def built_in_scenes(quick: bool, loads: Loads) -> list[Scene]:
+def built_in_scenes(quick: bool, loads: MachineReader) -> list[Scene]:
     """Return the scenes of `scenes.tsv` (quick, turn, machine) and of `stiff.tsv` (quick, machine, reference)."""
     scenes = []
-    for is_quick, turns, text in table("scenes.tsv"):
+    for is_quick, turns, text in table_lines("scenes.tsv"):
         if is_quick or not quick:
             scenes.append(Scene(loads(text), 360.0 * int(turns), ()))
-    for is_quick, text, *reference in table("stiff.tsv"):
+    for is_quick, text, *reference in table_lines("stiff.tsv"):
         if is_quick or not quick:
             scenes.append(Scene(loads(text), None, tuple(reference)))
     return scenes
@@ -214,7 +214,7 @@ def environment() -> str:
 
 
 def extremes_report(
-    loads: Loads, compute: Callable[[Machine, str], float | None]
+    loads: MachineReader, compute: Callable[[Machine, str], float | None]
 ) -> tuple[Report, bool]:
     """Return the verdicts on all cases, the worst first, and whether every one is passed.
 

@@ -180,6 +180,7 @@ class SpeedEquation:
 
     unknowns = 1
     bounded: int | None = 0
+    modal = None
 
     def __init__(self, effort: TurningEffort, law: SpeedLaw | None, flywheel: Array) -> None:
         self._effort, self._law, self.flywheel = effort, law, flywheel

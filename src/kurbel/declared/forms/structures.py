@@ -302,17 +302,18 @@ class Listing(Form):
 
     called: given if an item may have `like: NAME`, which copies the keys of an earlier item; items without a name are
     called by this word and their number, as in `cylinder 2`. An item's own keys replace copied ones, including those
-    that give the same quantity by another key (`stroke` replaces `crank`).
+    that give the same quantity by another key (`stroke` replaces `crank`). most: number of items.
     """
 
     shape = list
 
-    def __init__(self, item: Form, called: str = "") -> None:
+    def __init__(self, item: Form, called: str = "", most: int = MOST_ITEMS) -> None:
         item_text = f"a list; each {item.written}"
         super().__init__("a list, each item after '- '", written=item_text, parts=[("", item)])
         self.item = item
         self.kind = item.kind
         self.called = called
+        self.most = most
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a list into a tuple, with REFUSED in place of what could not be read."""
@@ -325,8 +326,8 @@ class Listing(Form):
             refused(f"expected a list, each item after '- ', got {node_kind(value)}")
         if not value:
             refused("the list is empty; give at least one item or leave the key out")
-        if len(value) > MOST_ITEMS:
-            refused(f"{len(value)} items; no machine has more than {MOST_ITEMS} of them")
+        if len(value) > self.most:
+            refused(f"{len(value)} items; no machine has more than {self.most} of them")
         items = self._completed(reading, value, path) if self.called else value
         return tuple(
             self.item.read(reading, item, (*path, index)) for index, item in enumerate(items)

@@ -17,26 +17,32 @@ which is exact at every frequency, and without inertia (α = 0) the torque of a 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.machine.shaft_line import GROUNDED, ShaftLine
+from kurbel.numerics.collocation import Modal
 from kurbel.numerics.pieces import Pieces
 from kurbel.solver.speed import SpeedLaw
 
+Q = TypeVar("Q", Array, ComplexArray)
+"""Quotients, real or complex."""
 _NOTHING = 1e-40
 """In place of a quotient of Holzer's table that is exactly zero: there a mass is at rest."""
 _AT_REST = 1e-6
 """A first mass that moves less than this, over the largest motion, is not what the others are referred to."""
 _ROUNDING = 1e-12
 """Of the largest motion: less than this is none in a line with branches, of which a whole part may be at rest."""
-_FIRST_MARGIN = 2e-15
-"""By how much a natural frequency that an eigenvalue solver finds is first taken to be uncertain, relatively."""
+_LAST_PLACES = 1e-15
+"""Of the highest natural frequency: by how much one that is guessed by singular values is uncertain."""
+_SHARES = np.linspace(0, 1, 17)[:, None]
+"""Where an interval that holds a natural frequency is cut into parts."""
 _LEAST_GUESS = 1e-9
 """Of the highest natural frequency: what an eigenvalue solver finds below it is rounding."""
 
@@ -108,11 +114,11 @@ class Chain:
         """Whether an end is fixed."""
         return bool(self.fixed_segments)
 
-    @property
+    @cached_property
     def has_branches(self) -> bool:
         """Whether more than two segments begin or end at a mass."""
-        ends = [mass for join in self.joins for mass in join if mass != GROUNDED]
-        return any(ends.count(mass) > 2 for mass in set(ends))
+        ends = Counter(mass for join in self.joins for mass in join if mass != GROUNDED)
+        return max(ends.values(), default=0) > 2
 
     @property
     def lumped(self) -> Array:
@@ -149,9 +155,8 @@ def response(
     nothing damps has no answer: it is not finite.
     """
     omegas, sides = frequencies.ravel(), torques.reshape(len(torques), -1)
-    damping = chain.mass_damping[:, None] + np.broadcast_to(load_damping, torques.shape).reshape(
-        sides.shape
-    )
+    added = np.broadcast_to(load_damping, torques.shape).reshape(sides.shape)
+    damping = chain.mass_damping[:, None] + added
     twists, springs = chain.twists, chain.springs(omegas)
     # what a segment has of inertia at its ends
     alpha = chain.waves(omegas, springs)
@@ -160,17 +165,47 @@ def response(
     inertias = chain.inertias[:, None] + np.abs(twists).T @ at_ends
     # a pivot of exactly zero is none: it ends as inf
     of_masses = 1j * (damping * omegas + np.finfo(float).tiny) - inertias * omegas**2
-    matrices = (twists.T * springs.T[:, None]) @ twists + of_masses.T[:, :, None] * np.eye(
-        len(of_masses)
-    )
 
-    def solved(sides: ComplexArray) -> ComplexArray:
-        return np.linalg.solve(matrices, sides.T[:, :, None])[:, :, 0].T
-
-    angles = solved(sides)
-    # of soft masses on stiff springs the matrix has lost digits, what is left over by the masses and the twists has not
+    angles = _angles(chain, springs, of_masses, sides)
+    # what is left over by the masses and the twists makes up for the digits that the first pass has lost
     left = sides - of_masses * angles - twists.T @ (springs * (twists @ angles))
-    return (angles + solved(left)).reshape(torques.shape)
+    more = _angles(chain, springs, of_masses, left)
+    return (angles + more).reshape(torques.shape)
+
+
+def _angles(
+    chain: Chain, springs: ComplexArray, of_masses: ComplexArray, sides: ComplexArray
+) -> ComplexArray:
+    """Return the angles (n, m) under torques (n, m), of springs (segments, m) and iΩ c − Ω² J of the masses (n, m).
+
+    From the leaves of the tree to its root each mass passes on the torque T = r θ + t; over the spring the angle
+    becomes s θ − t/k, s = 1 − r/k, and the torque (r/s) θ′ + t/s. Then the angles follow from the root outward.
+    """
+    fixed = chain.fixed_segments
+    tree = Tree(chain, fixed[-1] if fixed else None)
+    by_angle, free = -of_masses, sides.astype(complex)
+    ratios = np.ones(free.shape, complex)
+    for mass in tree.leaves_first:
+        for segment in tree.fixed[mass]:
+            by_angle[mass] -= springs[segment]
+        link = tree.links[mass]
+        if link is None:
+            continue
+        ratios[mass] = _not_zero(1 - by_angle[mass] / springs[link.segment])
+        if link.parent != GROUNDED:
+            by_angle[link.parent] += by_angle[mass] / ratios[mass]
+            free[link.parent] += free[mass] / ratios[mass]
+
+    angles = np.empty(free.shape, complex)
+    for mass in reversed(tree.leaves_first):
+        link = tree.links[mass]
+        if link is None:
+            with np.errstate(all="ignore"):  # the resonance of a line that nothing damps
+                angles[mass] = -free[mass] / by_angle[mass]
+            continue
+        beyond = 0.0 if link.parent == GROUNDED else angles[link.parent]
+        angles[mass] = (beyond + free[mass] / springs[link.segment]) / ratios[mass]
+    return angles
 
 
 def passing(
@@ -304,8 +339,15 @@ class _Bars:
 
     def __init__(self, chain: Chain, omegas: Array) -> None:
         self._springs = chain.stiffnesses
-        self._alpha = chain.waves(omegas, chain.stiffnesses[:, None])
-        self._cos, self._sinc = np.cos(self._alpha), sinc(self._alpha)
+        self._alpha = np.zeros((len(chain.joins), len(omegas)))
+        self._cos, self._sinc = np.ones((2, *self._alpha.shape))
+        heavy = np.flatnonzero(chain.segment_inertias)
+        if len(heavy):
+            self._alpha[heavy] = chain.waves(omegas, chain.stiffnesses[:, None])[heavy]
+            self._cos[heavy], self._sinc[heavy] = (
+                np.cos(self._alpha[heavy]),
+                sinc(self._alpha[heavy]),
+            )
         self._inertias = omegas * omegas * chain.segment_inertias[:, None] * self._sinc
 
     def onward(self, segment: int, angle: Any, torque: Any) -> tuple[Any, Any]:
@@ -455,34 +497,47 @@ class Modes:
     def omegas(self) -> Array:
         """Natural angular frequencies in rad/s (n,), of a free chain the first exactly 0.
 
-        Those of the elastic modes by bisection of the number of modes below, to the last digit.
+        Those of the elastic modes are the first numbers below which there are so many modes, to the last digit.
         """
         guessed = self._guessed()
-        wanted, margin = np.arange(len(guessed)), np.full(len(guessed), _FIRST_MARGIN)
-        while True:
-            low, high = guessed / (1 + margin), guessed * (1 + margin)
-            below_low, below_high = np.split(self._below(np.concatenate((low, high))), 2)
-            is_outside = (below_low > wanted) | (below_high <= wanted)
-            if not is_outside.any():
-                break
-            margin = np.where(is_outside, 10 * margin, margin)
-        while True:
-            # exponents are halved first, then digits
-            middle = np.where(high > 2 * low, np.sqrt(low) * np.sqrt(high), low + (high - low) / 2)
-            inside = (low < middle) & (middle < high)
-            if not inside.any():
-                return high if self.chain.is_held else np.append(0.0, high)
-            more = self._below(middle) > wanted
-            high, low = np.where(inside & more, middle, high), np.where(inside & ~more, middle, low)
+        found = guessed.copy()
+        # a singular value is known to a few units in the last place of the largest one
+        margin = np.minimum(_LAST_PLACES * guessed[-1] / guessed, 0.5)
+        low, high = guessed / (1 + margin), guessed * (1 + margin)
+        left = np.arange(len(guessed))
+        while len(left):
+            # the intervals are cut into parts, and the part that holds the mode is kept
+            steps = low + (high - low) * _SHARES
+            tried = np.where(high > 2 * low, low * (high / low) ** _SHARES, steps)
+            tried[-1] = high
+            has_more = self._below(tried.ravel()).reshape(tried.shape) > left
+            first = has_more.argmax(axis=0)
+            places = np.arange(len(left))
+            inner_low, inner_high = tried[first - 1, places], tried[first, places]
+            # one that does not hold it is widened
+            is_outside = has_more[0] | ~has_more[-1]
+            margin = np.where(is_outside, 100 * margin, margin)
+            low = np.where(is_outside, guessed[left] / (1 + margin), inner_low)
+            high = np.where(is_outside, guessed[left] * (1 + margin), inner_high)
+            # until nothing is between its ends
+            is_found = ~is_outside & (np.nextafter(low, high) == high)
+            found[left[is_found]] = high[is_found]
+            left, low, high, margin = (row[~is_found] for row in (left, low, high, margin))
+        return found if self.chain.is_held else np.append(0.0, found)
 
     def _guessed(self) -> Array:
-        """Return the elastic natural frequencies about, √ of the eigenvalues of J^{−½} K J^{−½}, inertias lumped."""
-        twists, roots = self.chain.twists, np.sqrt(self.chain.lumped)
-        scaled = twists * np.sqrt(self.chain.stiffnesses)[:, None] / roots
-        squares = np.linalg.eigvalsh(scaled.T @ scaled)
-        guessed = np.sqrt(np.maximum(squares, 0.0))
-        elastic = guessed if self.chain.is_held else guessed[1:]
+        """Return the elastic natural frequencies about, singular values of K^½ J^{−½}, inertias lumped."""
+        chain = self.chain
+        scaled = chain.twists * np.sqrt(chain.stiffnesses)[:, None] / np.sqrt(chain.lumped)
+        guessed = np.linalg.svd(scaled, compute_uv=False)[::-1]
+        # of a free chain with as many masses as segments and one more, there is none for the rotation
+        elastic = guessed[-self._elastic :]
         return np.maximum(elastic, _LEAST_GUESS * guessed[-1])
+
+    @property
+    def _elastic(self) -> int:
+        """How many elastic modes there are."""
+        return len(self.chain.inertias) - (0 if self.chain.is_held else 1)
 
     def _below(self, omegas: Array) -> Array:
         """Return how many elastic modes are below each ω (m,)."""
@@ -594,7 +649,7 @@ class Modes:
         return tuple(found)
 
 
-def _not_zero(quotient: Array) -> Array:
+def _not_zero(quotient: Q) -> Q:
     return np.where(quotient == 0, _NOTHING, quotient)
 
 
@@ -611,11 +666,13 @@ class ChainEquation:
 
     Numbers of the chain are (n,), or (n, machines); order: the largest natural one, omega: ω_n in rad/s, numbers or
     (machines,); driving: torques on the masses less their means in N m, (n, nodes, pieces). law: how the load on the
-    mass `loaded` rises with the speed. The unknowns are, in N m and of one size: for each segment the torque of its
-    spring less its mean, over `order`, and for each mass J ω_n (ω − ω_n).
+    mass `loaded` rises with the speed; by_modes: of one machine, whether its modes are solved one by one.
+    The unknowns are, in N m and of one size: for each segment the torque of its spring less its mean, over `order`, and
+    for each mass J ω_n (ω − ω_n).
     """
 
     noise: Array
+    modal: Modal | None = None
 
     def __init__(
         self,
@@ -626,13 +683,12 @@ class ChainEquation:
         driving: Array,
         law: SpeedLaw | None = None,
         loaded: int = 0,
+        by_modes: bool = False,
     ) -> None:
-        self._source, self._driving, self._law, self.noise = (
-            pieces,
-            driving,
-            law,
-            np.zeros(pieces.count),
-        )
+        self._source = pieces
+        self._driving = driving
+        self._law = law
+        self.noise = np.zeros(pieces.count)
         self._order, omega = (np.broadcast_to(one, pieces.count) for one in (order, omega))
         parts = np.ceil(2 * pieces.half * self._order[pieces.machine] / _SWING).clip(1, _MOST_PARTS)
         self.pieces = pieces.parted(parts.astype(int))
@@ -650,6 +706,19 @@ class ChainEquation:
             np.eye(self.unknowns)[..., None], (self.unknowns, self.unknowns, pieces.count)
         )
         self._matrix = self._flow(unit, np.arange(pieces.count))[1]
+        self.modal = self._modes(chain) if by_modes else None
+
+    def _modes(self, chain: Chain) -> Modal:
+        """Return the modes of the only machine, under a load that rises as at the nominal speed.
+
+        Of unknowns whose squares are energies the matrix is skew but for the damping. Raises LinAlgError.
+        """
+        matrix = self._matrix[..., 0].copy()
+        if self._law:
+            matrix[self.bounded, self.bounded] -= self._law.steepness[0] / self._height[0]
+        springs = np.sqrt(chain.stiffnesses) / self._order[0]
+        masses = np.sqrt(chain.inertias) / (chain.inertias * self._speeds[:, 0])
+        return Modal.of(matrix, np.concatenate((springs, masses)))
 
     def _flow(self, y: Array, machine: Indices) -> tuple[Array, Array]:
         """Return the torques in the segments (segments, k, n), and A y, at y (m, k, n) of these machines (n,)."""
@@ -669,20 +738,28 @@ class ChainEquation:
             (torques, np.broadcast_to(pieces.of(self._height), (1, *torques.shape[1:])))
         )
 
-    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
-        """Return y′ and its derivative by y."""
+    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array | None]:
+        """Return y′ and its derivative by y, None where the modes are known."""
         torques, height = known[:-1], known[-1]
         rate = self._flow(y, pieces.machine)[1]
         rate[-len(torques) :] += torques
-        slope = self._matrix[:, :, None, pieces.machine].repeat(y.shape[1], axis=2)
+        slope = None
+        if self.modal is None:
+            slope = self._matrix[:, :, None, pieces.machine].repeat(y.shape[1], axis=2)
         if self._law:
             # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
             u = y[self.bounded] / height
             rise, by_square = self._law.rise(u * (2 + u), pieces)
             rate[self.bounded] -= rise
-            slope[self.bounded, self.bounded] -= by_square * 2 * (1 + u) / height
+            if slope is not None:
+                slope[self.bounded, self.bounded] -= by_square * 2 * (1 + u) / height
         return rate, slope
 
     def torques(self, y: Array, pieces: Pieces) -> Array:
         """Return the torques in the segments less their means in N m, (segments, nodes, pieces)."""
         return self._flow(y, pieces.machine)[0]
+
+    def vibration(self, y: Array, pieces: Pieces) -> Array:
+        """Return ω − ω_n of the masses in rad/s, (n, nodes, pieces)."""
+        speeds = y[len(self._springs) :] * self._speeds[:, None, pieces.machine]
+        return np.asarray(speeds)

@@ -12,6 +12,7 @@ one does not vibrate with the torque: both masses turn alike, and
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -52,7 +53,7 @@ def natural_order(coupling: Coupling, own: Array, omega: Number) -> Array:
     return np.sqrt(coupling.stiffness * (1 / own + 1 / coupling.inertia)) / omega
 
 
-class CouplingTorque(Results):
+class CouplingTorque(Results, ABC):
     """Extremes of the torque in a coupling; torque: its samples in N m with their pieces."""
 
     torque: tuple[Pieces, Array]
@@ -82,13 +83,13 @@ class CouplingTorque(Results):
         pieces, torque = self.torque
         return pieces.extremes(torque[None]).each(self.result)[0]
 
+    @abstractmethod
     def result(self, values: Array) -> Any:
         """Return values (n,), nan for machines without a solution; for one machine a float."""
-        raise NotImplementedError
 
+    @abstractmethod
     def amplified(self) -> Number | None:
         """Return the swing of the torque over that in a rigid coupling; None where that does not swing."""
-        raise NotImplementedError
 
 
 class StiffCoupling(CouplingTorque):

@@ -8,7 +8,7 @@ frame that turns at half the speeds of both surfaces together the film is squeez
     M_ξ = (1−ξ)^{3/2} (1−ξ + 0.6 Λ)/(π λ²)      M_η = −4 η (1−ξ)^{1/2} (1−ξ + 0.28 Λ)/(π² λ²)
     λ = L/D of one land                          Λ = λ²/(1 + λ/4), of the short bearing 0
 
-0.6, 0.28 and 1/4 are fitted to solutions of Reynolds' equation for finite length (docs/bearings.md). The unknown is
+0.6, 0.28 and 1/4 are fitted to solutions of Reynolds' equation for finite length (docs/oil-film.md). The unknown is
 y = ε/√(1−ε²): every y is inside the shell, and no digit is lost near the wall.
 """
 
@@ -157,6 +157,7 @@ class FilmEquation:
 
     unknowns = 2
     bounded: int | None = None
+    modal = None
 
     def __init__(self, shape: FilmShape, pieces: Pieces, course: Array) -> None:
         self._pieces = pieces

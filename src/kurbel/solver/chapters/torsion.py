@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,7 +58,11 @@ _FAINT = 0.01
 _ROUNDING = 1e-14
 """Of the largest torque on a mass: an order that is smaller is zero."""
 _MOST_WORK, _FEWEST = 3.75e4, 40
-"""Pieces, at least the second number, times the cube of the unknowns: what a solution of about a second takes."""
+"""Pieces, at least the second number, times the cube of the unknowns: beyond that its modes are solved one by one."""
+_MOST_NUMBERS = 3e5
+"""Pieces times unknowns: what such a solution of some seconds takes."""
+_LONG = 50
+"""Masses of a line of which fewer orders are summed."""
 _WAVE = 240.0
 """Degrees of the shortest wave that are a polynomial of 16 nodes to 1e-13."""
 _ENDLESS = 1e9
@@ -383,6 +387,17 @@ class Critical(NamedTuple):
         return self.distance is not None and abs(self.distance) <= NEAR and self.share > _FAINT
 
 
+class SteadyMotion(NamedTuple):
+    """The motion at the working speed with all orders: torques in the segments less their means, in N m.
+
+    (segments, nodes, pieces); loss: mean power in W that the vibration dissipates.
+    """
+
+    pieces: Pieces
+    torques: Array
+    loss: float
+
+
 class ShaftVibration(Results):
     """The vibrations of the shaft line of a machine; orders (k,): those of the tables. Raises UsageError.
 
@@ -414,9 +429,7 @@ class ShaftVibration(Results):
         "N_d",
         "power",
         "Mean power dissipated by damping",
-        lambda vibration: (
-            None if vibration.vibration is None else float(vibration.vibration.loss[0])
-        ),
+        lambda vibration: vibration.loss,
         after="tau_vibratory",
     )
     M_vibratory = value(
@@ -564,45 +577,64 @@ class ShaftVibration(Results):
         )
 
     @cached_property
-    def steady(self) -> tuple[Pieces, Array] | None:
-        """The motion at the working speed with all orders: torques in the segments less their means, in N m.
+    def steady(self) -> SteadyMotion | None:
+        """The motion at the working speed with all orders.
 
-        (segments, nodes, pieces). None where certain orders are requested, where a loss factor or a segment with
-        inertia is given, and where no motion is found, or none that is worth its time.
+        None where certain orders are requested, where a loss factor or a segment with inertia is given, and where no
+        motion is found, or none that is worth its time.
         """
         chain, effort = self.chain, self.effort
-        if (
-            self.vibration is None
-            or not self._every
-            or chain.loss.any()
-            or chain.segment_inertias.any()
-        ):
+        has_other_segments = chain.loss.any() or chain.segment_inertias.any()
+        if self.vibration is None or not self._every or has_other_segments:
             return None
-        # the springs of a chain between several fixed ends are more unknowns than equations
-        if len(chain.fixed_segments) > 1:
-            return None
-        order, loaded = self.modes.omegas[-1] / effort.omega, self.line.load % len(self.line.masses)
         driven, _ = torques_on(effort, self.line)
         driven -= effort.pieces.mean(driven)[:, None]
-        equation = ChainEquation(
-            chain, order, effort.omega, effort.pieces, driven, SpeedLaw.of(effort), loaded
+        order = self.modes.omegas[-1] / effort.omega
+        loaded = self.line.load % len(self.line.masses)
+        motion_of = partial(
+            ChainEquation,
+            *(chain, order, effort.omega, effort.pieces, driven, SpeedLaw.of(effort), loaded),
         )
-        if max(len(equation.pieces.half), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
+        equation = motion_of()
+        count, unknowns = len(equation.pieces.half), equation.unknowns
+        if count * unknowns > _MOST_NUMBERS:
             return None
+        # the springs of a chain between several fixed ends are more unknowns than equations
+        is_open = len(chain.fixed_segments) > 1
+        if is_open or max(count, _FEWEST) * unknowns**3 > _MOST_WORK:
+            try:
+                equation = motion_of(by_modes=True)
+            except np.linalg.LinAlgError:
+                return None
         motion = periodic(equation, equation.pieces)
         if motion.failed[0]:
             return None
-        torques = equation.torques(motion.samples, motion.pieces)
-        return motion.pieces, torques / self.vibration.ratios[:, None, None]
+        pieces, samples = motion.pieces, motion.samples
+        # what the torques put in is what the dampers and the load take out
+        power = pieces.carried(driven, effort.pieces) * equation.vibration(samples, pieces)
+        return SteadyMotion(
+            pieces,
+            equation.torques(samples, pieces) / self.vibration.ratios[:, None, None],
+            float(pieces.mean(power).sum()),
+        )
+
+    @property
+    def loss(self) -> float | None:
+        """The mean power in W dissipated at the working speed by all orders, or by those requested."""
+        if self.steady:
+            return self.steady.loss
+        return float(self._summed.loss[0]) if self._summed else None
 
     @cached_property
     def _summed(self) -> Vibration | None:
-        """The orders that are summed at the working speed, four times the usual ones; None where `steady` has all."""
+        """The orders that are summed at the working speed, many times the usual ones; None where `steady` has all."""
         if self.steady or self.vibration is None:
             return None
         if not self._every:
             return self.vibration
-        acting = excitation(self.effort, self.line, every_order(self.effort.cycle, 4 * HIGHEST))
+        times = 16 if len(self.line.masses) <= _LONG else 4
+        orders = every_order(self.effort.cycle, times * HIGHEST)
+        acting = excitation(self.effort, self.line, orders)
         return Vibration(self.chain, self.line, acting, self.vibration.omegas)
 
     @property
@@ -632,7 +664,7 @@ class ShaftVibration(Results):
             torques = swings[self._summed.decisive, 0]
         else:
             assert self.steady
-            pieces, torques = self.steady
+            pieces, torques = self.steady.pieces, self.steady.torques
         ends, are_finite = pieces.extremes(torques), np.isfinite(torques).all(axis=(1, 2))
         highest = np.where(are_finite, ends.largest[:, 0], math.nan).tolist()
         lowest = np.where(are_finite, ends.smallest[:, 0], math.nan).tolist()
