@@ -267,7 +267,7 @@ def crank_lag(cylinder: Cylinder, first: Cylinder) -> float:
 
 def pin_lag(cylinder: Cylinder, first: Cylinder) -> float:
     """Return ζ = δ − γ in degrees, by which the crank pin of a cylinder lags that of the first on the shaft."""
-    return crank_lag(cylinder, first) - cylinder.bank_angle
+    return crank_lag(cylinder, first) - (cylinder.bank_angle - first.bank_angle)
 
 
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
