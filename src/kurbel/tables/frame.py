@@ -19,7 +19,7 @@ from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, called, in_sentences
 from kurbel.solver.case import Case
 from kurbel.solver.figures import AtAngles, Results
-from kurbel.tables.named_values import Choice, choices_in
+from kurbel.tables.named_values import ChosenValue, choices_in
 from kurbel.tables.shown import EVERYWHERE, ROUNDING, Places, shown_columns, shown_key_values
 from kurbel.tables.tables import (
     BEFORE,
@@ -94,7 +94,7 @@ class Subject(NamedTuple):
         row = self.results.rows.key_values.get(quantity.id) if self.results else None
         return row and row.of(self.results)
 
-    def named(self, choices: Iterable[Choice]) -> Iterator[tuple[Quantity, object]]:
+    def named(self, choices: Iterable[ChosenValue]) -> Iterator[tuple[Quantity, object]]:
         """Yield the chosen ones of its key values in SI, in their order, with no heading."""
         rows = self.results.rows.key_values if self.results else {}
         for choice in choices:
@@ -288,7 +288,7 @@ def _report_on_names(
     named_pistons = [piston for piston in pistons if piston.name in scopes]
 
     parts, whole = list[Part](), None
-    printed = set[Choice]()
+    printed = set[ChosenValue]()
     for subject in (*subjects, *named_pistons):
         chosen = list(subject.named(choices))
         if not chosen:
@@ -317,7 +317,7 @@ def _report_on_names(
     )
 
 
-def _lacking(choice: Choice, command: str) -> str:
+def _lacking(choice: ChosenValue, command: str) -> str:
     """Return the message for a key value that a machine, or a part of it, does not have."""
     quantity = every_quantity().key_values(command)[choice.id]
     owner = {"": "this machine", MACHINE: "the whole machine"}.get(choice.scope, choice.scope)
