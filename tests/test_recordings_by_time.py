@@ -114,7 +114,7 @@ def test_angles_by_the_pulses_of_a_wheel(tmp_path: Path, teeth: int, missing: in
     angles = turned + 0.03 * np.degrees(np.sin(np.radians(turned)))
     tooth = angles * teeth / 360 % teeth
     pulses = ((tooth % 1) > 0.5) & (tooth < teeth - missing)
-    columns = np.column_stack((absolute(ENGINE, angles), 5.0 * pulses))
+    columns = (absolute(ENGINE, angles), 5.0 * pulses)
     keys = f", pulse_column: 2, pressure_column: 1, teeth: {teeth}"
     keys += f", missing_teeth: {missing}" if missing else ""
     zero = 360 - 180 / teeth
@@ -132,7 +132,7 @@ def test_teeth_that_do_not_fit(tmp_path: Path) -> None:
     angles = np.arange(0.0, 1440.0, 0.5)
     tooth = angles / 6 % 60
     pulses = ((tooth % 1) > 0.5) & (tooth < 58)
-    columns = np.column_stack((absolute(ENGINE, angles), 5.0 * pulses))
+    columns = (absolute(ENGINE, angles), 5.0 * pulses)
     keys = ", pulse_column: 2, pressure_column: 1, teeth: 36, missing_teeth: 2"
     with pytest.raises(MachineFileError, match="58 teeth between two gaps, where a wheel of 36"):
         loads(machine_text(tmp_path, columns, keys, unit=""))
