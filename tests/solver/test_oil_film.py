@@ -203,7 +203,7 @@ def test_no_load_leaves_the_journal_in_the_middle() -> None:
 @pytest.mark.parametrize("size", [1e-5, 1e-2, 1e4, 1e8])
 def test_orbits_from_hardly_any_load_to_the_wall(size: float) -> None:
     film = film_under(lambda phi: size * (1 + 0.5 * np.cos(phi)), 1.0, shape(0.5))
-    assert film.repeats_itself
+    assert not film.obstacle
     assert 0 < film.film_thickness_min.value < film.shape.clearance
 
 
@@ -213,7 +213,7 @@ def test_a_load_that_turns_with_half_the_speed_has_no_film_that_repeats(size: fl
     pieces = Pieces.between(NOWHERE, 1, 720.0)
     turning = size * np.exp(0.5j * np.radians(pieces.degrees))
     film = OilFilm(shape(0.5), pieces, turning, np.ones_like(turning.real), 1.0, None)
-    assert not film.repeats_itself
+    assert "no film repeats" in film.obstacle
     assert film.film_thickness_min is None
 
 
@@ -384,6 +384,19 @@ def test_a_bearing_without_sizes_has_no_film_and_one_that_is_not_named_none_eith
     assert parts["crosshead pin"].film_obstacle == "no diameter and length given"
     assert parts["bearing A"].film is None
     assert parts["bearing A"].film_obstacle == ""
+
+
+def test_a_machine_without_the_key_leaves_nothing_out() -> None:
+    text = CONFIGS["waterworks"].read_text(encoding="utf-8")
+    for bearing in bearings_of(text).values():
+        assert (bearing.film, bearing.film_obstacle) == (None, "")
+
+
+def test_a_groove_as_wide_as_the_shell_of_a_rod_leaves_no_film() -> None:
+    bearing = bearings_of(VEE.replace("25 um", "25 um, groove: 20 mm"))["crank pin of cylinder 1"]
+    assert bearing.film_obstacle == "the groove leaves no land of the length of a rod"
+    assert bearing.film_thickness_min is None
+    assert bearing.at([0.0]).film_thickness is None
 
 
 REFUSED = [

@@ -155,6 +155,11 @@ class Report(NamedTuple):
             table for part in self.all_parts for table in part.place_tables if not table.in_note
         )
 
+    @property
+    def is_of_one_cylinder(self) -> bool:
+        """Whether it has the forces of an only cylinder, and of the whole machine the totals of its pistons."""
+        return self.command == "forces" and len(self.cylinders) == len(self.parts) == 1
+
     def of_cylinder(self, name: str) -> "Report":
         """Return the results of one part, or of all parts of a cylinder, given by name or number.
 
@@ -390,8 +395,7 @@ def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) 
     """
     left_out = _left_out_in_short(report.all_parts)
     report = shown_once(report)
-    if ids and report.whole and report.command == "forces" and len(report.cylinders) == 1:
-        # the totals of the only cylinder are near to its own
+    if ids and report.is_of_one_cylinder:
         report = report._replace(whole=None)
     order = {id: number for number, id in enumerate(ids)}
     of_whole = report.whole is not None and bool(report.whole.place_tables)
