@@ -18,7 +18,7 @@ from kurbel.machine.several import intervals, on_throws
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
-LATER = ("radial-9", "v-link", "wobbler", "opposed")
+LATER = ("radial-9", "v-link", "opposed")
 """Machines with keys that kurbel does not have yet."""
 MACHINES: dict[str, dict[str, Any]] = {}
 for document in yaml.safe_load_all(
@@ -223,6 +223,39 @@ def test_a_sweep_of_split_pins_is_the_machines_one_by_one(tmp_path: Path) -> Non
         _, angle, moment = row.split(",")[:3]
         single = Case(loads(V6.replace("-30 deg", f"{angle} deg")))
         assert float(moment) == pytest.approx(single.balance.M_free_max.value, rel=1e-12)
+
+
+WOBBLER = MACHINES["wobbler"]["machine"]
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ("trunnion: 10 mm", "the crank pin would pass through the trunnions"),
+        ("trunnion: 40 mm\nmasses: {piston: 1 kg}", "the cylinder swings with its piston"),
+        ("trunnion: 40 mm\ninclination: 90 deg", "the cylinder swings with its piston"),
+        ("trunnion: 40 mm\noffset: 2 mm", "belongs to 'mechanism: slider-crank'"),
+        ("trunnion: 40 mm\nfriction: {crosshead: 0.1}", "an oscillating-cylinder has no"),
+        ("trunnion: 40 mm\nfriction: {crank_pin: 0.1}", "an oscillating-cylinder has no"),
+    ],
+)
+def test_an_oscillating_cylinder_that_cannot_be(keys: str, message: str) -> None:
+    with pytest.raises(MachineFileError, match=message):
+        loads(WOBBLER.replace("trunnion: 40 mm", keys))
+
+
+def test_other_words_for_an_oscillating_cylinder_lead_to_it() -> None:
+    with pytest.raises(MachineFileError, match="oscillating-cylinder"):
+        loads(WOBBLER.replace("oscillating-cylinder", "wobbler"))
+
+
+def test_an_oscillating_cylinder_turns_as_the_slotted_lever_half_a_turn_on() -> None:
+    """The same triangle of shaft, pin and pivot, of which one counts from the far and one from the near pin."""
+    lever = loads("{speed: 1000 rpm, mechanism: slotted-lever, crank: 10 mm, frame: 40 mm}")
+    cylinder = Case(loads(WOBBLER)).cylinders[0].at([0.0, 25.0, 111.0, 250.0])
+    swing = Case(lever).cylinders[0].at([180.0, 205.0, 291.0, 430.0])
+    for id in ("theta", "theta_dot", "theta_ddot"):
+        assert cylinder[id] == pytest.approx(swing[id], rel=1e-12, abs=1e-12)
 
 
 SLIPS: tuple[tuple[str, Callable[..., Any], str, str], ...] = (
