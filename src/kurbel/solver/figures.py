@@ -173,7 +173,7 @@ class Rows(NamedTuple):
         return Rows(*map(changed_rows, self))
 
 
-Door = Callable[[], "type[Results]"]
+ResultsDoor = Callable[[], "type[Results]"]
 """A function with one import inside, that of the class it returns."""
 
 
@@ -183,12 +183,12 @@ class PartResults(Computed[V]):
     def __init__(
         self,
         function: Of[V],
-        kind: type[Results] | Door,
+        kind: type[Results] | ResultsDoor,
         unless: ResultCondition | None,
         there: ResultCondition | None,
     ) -> None:
         super().__init__(function, Quantity("", "", "", function.__doc__ or ""))
-        self._door: Door = (lambda: kind) if isinstance(kind, type) else kind
+        self._door: ResultsDoor = (lambda: kind) if isinstance(kind, type) else kind
         self.unless, self.there = unless, there
 
     @cached_property
@@ -212,7 +212,7 @@ class PartResults(Computed[V]):
 
 
 def part(
-    kind: type[Results] | Door,
+    kind: type[Results] | ResultsDoor,
     unless: ResultCondition | None = None,
     there: ResultCondition | None = None,
 ) -> Callable[[Of[V]], PartResults[V]]:
