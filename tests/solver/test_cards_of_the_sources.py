@@ -135,7 +135,7 @@ def test_rings_pressed_by_the_gas(written: str, k: float) -> None:
 )
 def test_metal_of_the_shells(metal: str, k_v: float, cool: bool, words: str) -> None:
     """G: 25 for gun metal, 30 to 35 for white metal, in kgf m/(cm² s)."""
-    from kurbel.notes.warnings import shell_verdict
+    from kurbel.notes.machine_results import shell_verdict
 
     found, sentence = shell_verdict(k_v * 98066.5, metal)
     assert found == cool
