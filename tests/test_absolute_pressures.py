@@ -10,8 +10,6 @@ from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 MACHINE = """
 speed: 240 rpm
 stroke: 300 mm

@@ -9,8 +9,6 @@ import pytest
 from command import answer, run
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 
 def parsed(name: str, *more: str) -> dict[str, Any]:
     return answer("balance", CONFIGS[name], *more)

@@ -2,12 +2,9 @@
 
 import json
 
-import pytest
-
 from command import run
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 
 

@@ -12,8 +12,6 @@ from command import run
 from kurbel import loads, solve
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
 PRESSURE = "constant: {expansion: 5 bar, compression: 1 bar}"
 GAUGE = "indicator: {head_end: {trace: {unit: bar, points: [[0, 1], [180, 5], [360, 1]]}}}\n"

@@ -136,7 +136,7 @@ def test_quick_commands_import_nothing_heavy() -> None:
     assert result.returncode == 0, result.stderr
 
 
-def test_a_width_is_filled_where_it_is_asked_for(solved_once: None) -> None:
+def test_a_width_is_filled_where_it_is_asked_for() -> None:
     """COLUMNS in a pipe, --width everywhere; no line is longer, and no word is broken."""
     machine = str(CONFIGS["waterworks"])
     for arguments in (["table"], ["forces", machine, "--layout", "rows"], ["check", machine]):

@@ -5,7 +5,6 @@ import pytest
 from command import printed
 from representative import CONFIGS, few
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 FOUR = str(CONFIGS["four-cylinder-generator"])
 EQUAL = """
 speed: 600 rpm

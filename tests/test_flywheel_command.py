@@ -10,8 +10,6 @@ import pytest
 from command import answer, printed, run
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 ENGINE = CONFIGS["waterworks"].read_text(encoding="utf-8")
 PUNCH = CONFIGS["punch"].read_text(encoding="utf-8")
 

@@ -8,8 +8,6 @@ import pytest
 
 from command import run
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 
 def answer(incline: float, coefficient: float, *words: str) -> dict[str, Any]:
     found = run(

@@ -7,7 +7,6 @@ import pytest
 from command import run
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 FILM = ("film_thickness_min", "eccentricity_max", "film_pressure_max", "film_loss", "side_flow")
 

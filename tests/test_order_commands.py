@@ -7,7 +7,6 @@ import pytest
 from command import answer
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 BLOWER, SHIP = (str(CONFIGS[name]) for name in ("coupled-blower", "marine-diesel"))
 
 

@@ -10,8 +10,6 @@ from kurbel.solver.figures import result_rows
 from kurbel.tables.frame import Frame
 from representative import case_of
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 
 @pytest.mark.parametrize("missing", ["dead_centres", "coordinate", "slope", "curvature"])
 def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> None:

@@ -10,8 +10,6 @@ from kurbel.declared.units import KINDS, ZEROED_UNITS, Kind, parse_quantity, uni
 from kurbel.errors import UnitError
 from representative import CONFIGS, case_of, law_of_each
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
 
 

@@ -10,7 +10,6 @@ from command import run
 from kurbel.report.commands import REPORTS
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 BROKEN = """\
 name: Engine with five mistakes
 speed: 50

@@ -11,8 +11,6 @@ from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 COMPRESSOR = """
 speed: 600 rpm
 crank: 50 mm

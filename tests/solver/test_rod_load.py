@@ -10,8 +10,6 @@ from kurbel.notes.warnings import cylinder_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 EXAMPLES = Path(__file__).parents[1] / "examples"
 RLO1, RLO5 = ((EXAMPLES / f"{name}.yaml").read_text("utf-8") for name in ("RLO1", "RLO5"))
 PARTS = "masses: {piston: 60 kg, piston_rod: 30 kg, crosshead: 50 kg, other: 10 kg, connecting_rod: 80 kg}"

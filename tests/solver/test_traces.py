@@ -34,8 +34,6 @@ from kurbel.traces.correct import Trace
 from kurbel.traces.read import Layout
 from representative import few
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 BAR = 1e5
 CRANK = SliderCrank(0.2, 0.9)
 
