@@ -10,7 +10,8 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.stress import Place, ThrowStrength, places
+from kurbel.solver.chapters.stress import ThrowStrength
+from kurbel.solver.chapters.stress_places import Place, places
 from kurbel.solver.shaft import FreeBody
 from machines import constant_pressure
 

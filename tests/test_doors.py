@@ -66,6 +66,7 @@ CHECKED = {
     | {"locomotive"},
     "solver.chapters.bearings": {"crankshaft"},
     "solver.chapters.stress": {"crankshaft"},
+    "solver.chapters.stress_places": {"crankshaft"},
     "solver.shaft": {"crankshaft"},
     "report.torsion": {"shaft", "coupling"},
     "report.delivery": {"pump", "compressor", "gas"},

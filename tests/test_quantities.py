@@ -2,11 +2,12 @@
 
 import pytest
 
-from kurbel import loads
+from kurbel import loads, quantities
 from kurbel.mechanisms import Mechanism
+from kurbel.quantity import value
 from kurbel.report.commands import report_of
-from kurbel.solver.case import CHAPTERS
-from kurbel.solver.figures import result_rows
+from kurbel.solver.case import CHAPTERS, Chapter
+from kurbel.solver.figures import AtAngles, Results, result_rows
 from kurbel.tables.frame import Frame
 from representative import case_of
 
@@ -19,6 +20,52 @@ def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> 
     )
     with pytest.raises(TypeError, match=rf"abstract class Half .*{missing}"):
         half()
+
+
+# one id, one meaning
+
+
+class Wear(Results):
+    """What a new chapter may have: an id that the guide force has as well."""
+
+    command = "wear"
+    N_max = value("N_max", "power", "Largest power of wear")
+
+
+class WearColumns(AtAngles):
+    """What a new chapter may have: a column with the id of the guide force, and its largest value."""
+
+    commands = ("wear",)
+    N = value("N", "power", "Power of wear", extremes=("wear",), called="power of wear")
+
+
+class WearOverAngle(Results):
+    """The results with these columns."""
+
+    command, state = "wear", WearColumns
+
+
+@pytest.mark.parametrize(
+    ("kind", "message"),
+    [
+        (Wear, "'N_max' of Wear has the kind 'power', but 'force' in CylinderForces"),
+        (WearOverAngle, "'N' of WearOverAngle has the kind 'power', but 'force' in CylinderForces"),
+    ],
+)
+def test_an_id_with_two_meanings_is_refused_by_name(
+    monkeypatch: pytest.MonkeyPatch, kind: type[Results], message: str
+) -> None:
+    wear = Chapter("wear", lambda: kind, lambda case: [])
+    monkeypatch.setattr(quantities, "CHAPTERS", (*CHAPTERS, wear))
+    with pytest.raises(TypeError, match=rf"^{message}: give it another id$"):
+        quantities.every_quantity.__wrapped__()
+
+
+def test_a_class_that_declares_an_id_twice_is_refused_when_it_is_made() -> None:
+    largest = value("N_max", "force", "Largest power of wear")
+    members = {"command": "wear", "state": WearColumns, "N_max": largest}
+    with pytest.raises(TypeError, match="'N_max' of Twice has the kind 'power', but 'force'"):
+        type("Twice", (Results,), members)
 
 
 # printed symbols as names

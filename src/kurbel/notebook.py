@@ -10,6 +10,7 @@ from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.machine_file.reader import machine_of
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import Quantity
 from kurbel.solver import case as solved
 from kurbel.solver.figures import NotebookView, Results
 
@@ -70,9 +71,8 @@ def as_html(shown: solved.Case | Results) -> str:
     ]
     if len(parts) != 1 or machine.flywheel:
         parts.append(("whole machine", shown.flywheel))
-    return (
-        f"<h3>{escape(machine.name)}</h3>\n{''.join(_key_values(one, name) for name, one in parts)}"
-    )
+    tables = "".join(_key_values(results, name) for name, results in parts)
+    return f"<h3>{escape(machine.name)}</h3>\n{tables}"
 
 
 def _key_values(results: Results, caption: str) -> str:
@@ -84,16 +84,17 @@ def _key_values(results: Results, caption: str) -> str:
 
     with np.errstate(all="ignore"):
         try:
-            every = results.key_values().values()
-            values = [
-                one.value if one.degrees is None else Extreme(one.value, one.degrees)
-                for one in every
-            ]
-            found = shown_key_values(zip((one.quantity for one in every), values), "metric")
+            in_si = list[tuple[Quantity, object]]()
+            for figure in results.key_values().values():
+                value: object = figure.value
+                if figure.degrees is not None:
+                    value = Extreme(figure.value, figure.degrees)
+                in_si.append((figure.quantity, value))
+            key_values = shown_key_values(in_si, "metric")
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
     out = Html(Look("html"))
-    return "".join(written([key_value_table(caption, found, out.look)], out))
+    return "".join(written([key_value_table(caption, key_values, out.look)], out))
 
 
 NotebookView.as_html = as_html

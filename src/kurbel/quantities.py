@@ -7,8 +7,17 @@ or `COLUMNS`, which go from chapter to chapter and open no more of them than the
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, cached_property
 
+from kurbel.mechanisms import KeyOffer, Offer
 from kurbel.mechanisms.kinds import KINDS
-from kurbel.quantity import Lists, Quantity, by_id, called, rejoined_names
+from kurbel.quantity import (
+    Lists,
+    Meanings,
+    Quantity,
+    by_id,
+    called,
+    refuse_other_meanings,
+    rejoined_names,
+)
 from kurbel.solver.case import CHAPTERS, Chapter
 from kurbel.solver.figures import doors_of, result_rows
 from kurbel.solver.forces import CylinderForces
@@ -16,22 +25,29 @@ from kurbel.solver.forces import CylinderForces
 
 @cache
 def every_quantity() -> Lists:
-    """Return all quantities that any machine may have; one that several classes declare is listed for each."""
-    mechanisms = [door() for door in KINDS.values()]
-    offers = tuple(dict.fromkeys(offer for mechanism in mechanisms for offer in mechanism.OFFERS))
-    key_offers = tuple(
-        dict.fromkeys(offer for mechanism in mechanisms for offer in mechanism.KEY_OFFERS)
-    )
+    """Return all quantities that any machine may have; one that several classes declare is listed for each.
+
+    Raises TypeError for an id that has two meanings.
+    """
+    offers, key_offers = dict[Offer, None](), dict[KeyOffer, None]()
+    for door in KINDS.values():
+        mechanism = door()
+        offers |= dict.fromkeys(mechanism.OFFERS)
+        key_offers |= dict.fromkeys(mechanism.KEY_OFFERS)
     columns: list[Quantity] = []
     key_values: list[Quantity] = []
+    meanings_of_columns: Meanings = {}
+    meanings_of_key_values: Meanings = {}
     for chapter in CHAPTERS:
-        rows = (
-            result_rows(chapter.kind, offers, key_offers)
-            if chapter.kind is CylinderForces
-            else result_rows(chapter.kind)
-        )
-        columns += rows.lists.all_columns
-        key_values += rows.lists.all_key_values
+        if chapter.kind is CylinderForces:
+            rows = result_rows(chapter.kind, tuple(offers), tuple(key_offers))
+        else:
+            rows = result_rows(chapter.kind)
+        lists, owner = rows.lists, chapter.kind.__name__
+        refuse_other_meanings(meanings_of_columns, lists.all_columns, owner, with_sentence=False)
+        refuse_other_meanings(meanings_of_key_values, lists.all_key_values, owner)
+        columns += lists.all_columns
+        key_values += lists.all_key_values
     return Lists(tuple(columns), tuple(key_values))
 
 

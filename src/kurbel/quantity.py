@@ -38,6 +38,14 @@ ITS_OWN = ("those of its class",)
 """Commands of a quantity that does not say which."""
 
 
+_OF_RAM = (
+    ("piston force", "force along the stroke line"),
+    ("piston speed", "ram speed"),
+    (" (yoke frame: on the piston rod)", ""),
+)
+"""Words of sentences, and what they are of a machine that drives a ram and has no piston."""
+
+
 class Quantity(NamedTuple):
     """One printed quantity; the order in which quantities are declared is that in which they are printed.
 
@@ -120,21 +128,22 @@ class Quantity(NamedTuple):
 
     def of_ram(self) -> Quantity:
         """Return the quantity of a machine that drives a ram and has no piston."""
-        text = self.text.replace("piston force", "force along the stroke line").replace(
-            "piston speed", "ram speed"
-        )
+        text = self.text
+        for of_piston, of_ram in _OF_RAM:
+            text = text.replace(of_piston, of_ram)
         return self._replace(text=text)
 
     def without_guide(self) -> Quantity:
         """Return the quantity of a machine without a crosshead guide, whose piston rod takes the side force."""
-        return self._replace(text=self.text.replace("guide force", "side force on the piston rod"))
+        text = self.text.replace("guide force", "side force on the piston rod")
+        return self._replace(text=text.replace("Force on the guide,", "Force on the piston rod,"))
 
     def printed_by(self, command: str, heading: str = "") -> Quantity:
         """Return it as a key value of this command and its own `commands`, below this heading unless it has one."""
-        words = (() if self.commands == ITS_OWN else self.commands) + (
-            (command,) if command else ()
-        )
-        return self._replace(commands=tuple(dict.fromkeys(words)), heading=self.heading or heading)
+        commands = [] if self.commands == ITS_OWN else list(self.commands)
+        if command and command not in commands:
+            commands.append(command)
+        return self._replace(commands=tuple(commands), heading=self.heading or heading)
 
     def marked(self, unit: str) -> str:
         """Return the unit as it is shown."""
@@ -168,23 +177,56 @@ def by_id(*quantities: Quantity) -> dict[str, Quantity]:
     return {quantity.id: quantity for quantity in quantities}
 
 
+Meanings = dict[str, tuple[Quantity, str]]
+"""Id -> the quantity that was declared first with it, and the class that has it."""
+
+
+def refuse_other_meanings(
+    meanings: Meanings, quantities: Iterable[Quantity], owner: str, with_sentence: bool = True
+) -> None:
+    """Add the quantities of a class to the meanings of their ids; raises TypeError where an id has another one.
+
+    with_sentence: two classes with one id also have the same sentence; columns may have one for each command.
+
+    >>> force = Quantity("N_max", "N_max", "force", "Largest guide force")
+    >>> refuse_other_meanings({"N_max": (force, "CylinderForces")}, [force._replace(kind="power")], "Pump")
+    Traceback (most recent call last):
+    TypeError: 'N_max' of Pump has the kind 'power', but 'force' in CylinderForces: give it another id
+    """
+    for quantity in quantities:
+        first, where = meanings.setdefault(quantity.id, (quantity, owner))
+        pairs = [("kind", quantity.kind, first.kind), ("symbol", quantity.symbol, first.symbol)]
+        if with_sentence:
+            pairs.append(("sentence", quantity.text, first.text))
+        for what, text, text_of_first in pairs:
+            if text != text_of_first:
+                raise TypeError(
+                    f"'{quantity.id}' of {owner} has the {what} '{text}', but '{text_of_first}' in {where}: "
+                    "give it another id"
+                )
+
+
 def called(name: str, quantities: Iterable[Quantity]) -> tuple[str, ...]:
     """Return the ids of the quantities that a name may mean: their id, or else a symbol as it is printed.
 
     >>> called("A_H", [Quantity("A_head", "A_H", "area", "Piston area at the head end")])
     ('A_head',)
     """
-    given = tuple(quantities)
-    if any(name == one.id for one in given):
+    quantities = tuple(quantities)
+    if any(name == quantity.id for quantity in quantities):
         return (name,)
-    return tuple(dict.fromkeys(one.id for one in given if name in (one.symbol, one.ascii_symbol)))
+    ids = dict[str, None]()
+    for quantity in quantities:
+        if name in (quantity.symbol, quantity.ascii_symbol):
+            ids[quantity.id] = None
+    return tuple(ids)
 
 
-def ambiguity(name: str, found: tuple[str, ...]) -> str:
+def ambiguity(name: str, ids: tuple[str, ...]) -> str:
     """Return the message for a symbol that several quantities have; '' if only one has it."""
-    return (
-        f"'{name}' is the symbol of {' and of '.join(found)}; write which" if len(found) > 1 else ""
-    )
+    if len(ids) < 2:
+        return ""
+    return f"'{name}' is the symbol of {' and of '.join(ids)}; write which"
 
 
 def in_sentences(word: str, quantities: Iterable[Quantity]) -> str:
@@ -194,9 +236,10 @@ def in_sentences(word: str, quantities: Iterable[Quantity]) -> str:
     '; it is in the sentences of A_head'
     """
     words = word.lower().replace("_", " ")
-    ids = dict.fromkeys(
-        quantity.id for quantity in quantities if len(words) > 2 and words in quantity.text.lower()
-    )
+    if len(words) < 3:
+        return ""
+    with_word = (quantity for quantity in quantities if words in quantity.text.lower())
+    ids = dict.fromkeys(quantity.id for quantity in with_word)
     return f"; it is in the sentences of {', '.join(ids)}" if ids else ""
 
 
@@ -208,12 +251,17 @@ def rejoined_names(words: Iterable[str], quantities: Iterable[Quantity]) -> Iter
     >>> list(rejoined_names(["T", "F_z", "max"], [Quantity("F_pin", "F_z,max", "force", "Force on the pin")]))
     ['T', 'F_z,max']
     """
-    rest, known = list(words), tuple(quantities)
-    ids = {one.id for one in known}
+    rest, quantities = list(words), tuple(quantities)
+    ids = {quantity.id for quantity in quantities}
     while rest:
-        parts = (rest[:count] for count in range(min(len(rest), 4), 1, -1))
-        names = (",".join(part) for part in parts if not ids.issuperset(part))
-        name = next((name for name in names if called(name, known)), rest[0])
+        # the longest run of words that is a symbol, or else the next word
+        name = rest[0]
+        for count in range(min(len(rest), 4), 1, -1):
+            joined = ",".join(rest[:count])
+            are_ids = ids.issuperset(rest[:count])
+            if not are_ids and called(joined, quantities):
+                name = joined
+                break
         del rest[: name.count(",") + 1]
         yield name
 
@@ -232,19 +280,20 @@ class Lists(NamedTuple):
 
     def columns(self, command: str) -> dict[str, Quantity]:
         """Return the columns of a command, by id."""
-        return by_id(*(one for one in self.all_columns if command in one.commands))
+        return by_id(*(column for column in self.all_columns if command in column.commands))
 
     def key_values(self, command: str) -> dict[str, Quantity]:
         """Return the key values of a command, by id."""
-        return by_id(*(one for one in self.all_key_values if command in one.commands))
+        values = self.all_key_values
+        return by_id(*(key_value for key_value in values if command in key_value.commands))
 
     def commands_of(self, id: str) -> tuple[str, ...]:
         """Return the commands that have a key value, the one whose own it is first."""
-        return tuple(
-            dict.fromkeys(
-                word for one in self.all_key_values if one.id == id for word in one.commands
-            )
-        )
+        commands = dict[str, None]()
+        for key_value in self.all_key_values:
+            if key_value.id == id:
+                commands |= dict.fromkeys(key_value.commands)
+        return tuple(commands)
 
 
 Of = Callable[[Any], V]
@@ -299,16 +348,16 @@ class Computed(Generic[V]):
         self.name, self.rows = name, (row._replace(quantity=row.quantity._replace(id=name)),)
 
     @overload
-    def __get__(self, one: None, owner: type | None = None) -> Computed[V]: ...
+    def __get__(self, results: None, owner: type | None = None) -> Computed[V]: ...
     @overload
-    def __get__(self, one: object, owner: type | None = None) -> V: ...
-    def __get__(self, one: object | None, owner: type | None = None) -> V | Computed[V]:
-        if one is None:
+    def __get__(self, results: object, owner: type | None = None) -> V: ...
+    def __get__(self, results: object | None, owner: type | None = None) -> V | Computed[V]:
+        if results is None:
             return self
-        known = vars(one)
-        if self.name not in known:
-            known[self.name] = self.function(one)
-        return known[self.name]
+        computed = vars(results)
+        if self.name not in computed:
+            computed[self.name] = self.function(results)
+        return computed[self.name]
 
 
 def key_value(
@@ -361,8 +410,8 @@ class ForEach:
     def __init__(self, of: FormulaOfPart, rows: tuple[QuantityRow, ...]) -> None:
         self.of, self.rows = of, rows
 
-    def __get__(self, one: object | None, owner: type) -> Any:
-        return self if one is None else partial(self.of, one)
+    def __get__(self, results: object | None, owner: type) -> Any:
+        return self if results is None else partial(self.of, results)
 
 
 def values_for(
@@ -385,12 +434,17 @@ def values_for(
     `Quantity`, the same for all.
     """
 
-    answer: FormulaOfPart = of or (lambda one, part: one.answers.get(id.replace("*", part)))
+    answer: FormulaOfPart = of or (lambda results, part: results.answers.get(id.replace("*", part)))
 
     def row(part: str, index: str, called: str) -> QuantityRow:
-        texts = id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called)
-        own = {"commands": ITS_OWN, "after": after.replace("*", part), "group": group(part)}
-        quantity = Quantity(*texts, **(own | words))
+        defaults = {"commands": ITS_OWN, "after": after.replace("*", part), "group": group(part)}
+        quantity = Quantity(
+            id.replace("*", part),
+            symbol.replace("*", index),
+            kind,
+            text.replace("*", called),
+            **(defaults | words),
+        )
         computed = Computed(lambda results: answer(results, part), quantity, repeats=repeats)
         return computed.rows[0]  # computed once, as any other
 

@@ -200,6 +200,23 @@ def test_forces_and_speeds_are_those_of_the_free_body(machine):
 
 
 @every()
+def test_of_a_ram_no_sentence_says_piston(machine):
+    if not machine.slides:
+        return
+    forces = loaded(machine).cylinders[0]
+    assert forces.rows.key_values["stroke"].of(forces)
+    state = forces.at(ANGLES)
+    rows = [row for row in forces.rows.key_values.values() if row.of(forces) is not None]
+    rows += [row for row in forces.rows.columns.values() if row.of(state) is not None]
+    for quantity in (row.quantity for row in rows):
+        text = quantity.text if machine.guided else quantity.text.replace("piston rod", "rod")
+        assert "piston" not in text, (
+            f"the sentence of {quantity.id} says 'piston', and a machine that drives a ram has none: "
+            f"add the words for a ram to _OF_RAM of kurbel.quantity, or write it without: {quantity.text}"
+        )
+
+
+@every()
 def test_the_force_on_the_pin_has_the_parts_t_and_d(machine):
     """|F| = |P| hypot(q′/R, D/P): what pushes the pin is one force, of the block or of the rod."""
     degrees = np.array(ANGLES)

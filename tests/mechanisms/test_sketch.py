@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from test_every_mechanism import MACHINES
 
 from kurbel.crank_angle import CrankAngle
@@ -12,6 +13,12 @@ from representative import law_of_each
 
 DEGREES = np.linspace(0.0, 360.0, 73)
 DRAWN = {name: one for name, one in MACHINES.items() if one.sketch(CrankAngle.of(0.0)) is not None}
+
+
+def test_every_mechanism_has_a_picture() -> None:
+    for name in MACHINES.keys() - DRAWN.keys():
+        mechanism = type(MACHINES[name]).__name__
+        pytest.fail(f"{mechanism} ({name}) has no picture: give it a method 'sketch'")
 
 
 def sketch_of(mechanism: Mechanism) -> dict[str, complex]:

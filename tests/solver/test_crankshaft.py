@@ -14,7 +14,8 @@ from kurbel.machine.parts import ConnectingRod, Masses
 from kurbel.machine_file import loads
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.chapters.stress import PARTS, CrankshaftStrength, places
+from kurbel.solver.chapters.stress import CrankshaftStrength
+from kurbel.solver.chapters.stress_places import PARTS, places
 from kurbel.solver.shaft import flywheel_weight, weight_in_throw
 from machines import STEAM_CARD, constant_pressure
 from representative import few

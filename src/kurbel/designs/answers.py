@@ -6,6 +6,7 @@ break.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import chain
 from typing import Any, NamedTuple, Union
 
 import numpy as np
@@ -20,7 +21,7 @@ from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
 from kurbel.machine.cylinder import may_lock
-from kurbel.machine.indicator import Card
+from kurbel.machine.indicator import Card, Chamber
 from kurbel.machine.origin import Origin
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of, size_of
@@ -107,35 +108,37 @@ def requested_answers(
     Raises UsageError for a key value that does not exist, or that this machine does not have.
     """
     case = Case(machine)
-    once: dict[tuple[str, str], list[Answer]] = {}
     if names:
-        found = [
-            answer for name in KEY_VALUES.names_of(names) for answer in _named(case, name, option)
-        ]
+        held = []
+        for name in KEY_VALUES.names_of(names):
+            held += _named(case, name, option)
     else:
-        found = [*_holding(case, "forces" if machine.cylinders else "flywheel")]
-    for one, value in found:
+        held = list(_holding(case, "forces" if machine.cylinders else "flywheel"))
+
+    once: dict[tuple[str, str], list[Answer]] = {}
+    for answer, value in held:
         # other designs may have a value with an angle where this one has an error
-        with_angle = with_angles and isinstance(value, (Extreme, KurbelError))
-        each = [one, one._replace(angle=True)] if with_angle else [one]
-        once.setdefault((one.subject, one.quantity.id), each)
-    return tuple(part for each in once.values() for part in each)
+        has_angle = with_angles and isinstance(value, (Extreme, KurbelError))
+        answers = [answer, answer._replace(angle=True)] if has_angle else [answer]
+        once.setdefault((answer.subject, answer.quantity.id), answers)
+    return tuple(chain.from_iterable(once.values()))
 
 
 def _named(case: Case, name: str, option: str) -> list[tuple[Answer, object]]:
     """Return (key value, its value for this machine: see `_holding`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
-    prefix, _, own = name.rpartition(".")
+    prefix, _, bare_name = name.rpartition(".")
     owner = _WHOLE if prefix == MACHINE else prefix
-    ids = KEY_VALUES.ids_of(own)
-    if not ids or ambiguity(own, ids):
+    ids = KEY_VALUES.ids_of(bare_name)
+    wrong = ambiguity(bare_name, ids)
+    if not ids or wrong:
         declared = every_quantity().all_key_values
-        near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
-        raise UsageError(
-            f"{option}: {ambiguity(own, ids) or f'no key value {text_in_one_line(name)!r}{near}'}"
-        )
+        all_ids = tuple(quantity.id for quantity in declared)
+        near = in_sentences(name, declared) or did_you_mean(name, all_ids)
+        raise UsageError(f"{option}: {wrong or f'no key value {text_in_one_line(name)!r}{near}'}")
     for command in _commands_with(case, ids[0]):
-        if found := [*_holding(case, command, ids[0], owner)]:
-            return found
+        held = list(_holding(case, command, ids[0], owner))
+        if held:
+            return held
     raise UsageError(
         f"{option}: this machine has no {text_in_one_line(name)}; kurbel check shows why"
     )
@@ -156,21 +159,21 @@ def _holding(
     Each comes with its value for this machine, or the error, since other designs may have a value.
     """
     for subject in subjects_of(case, command, pistons=bool(owner)):
+        if owner not in ("", subject.name, subject.identity):
+            continue
         for quantity in subject.lists.key_values(command).values():
-            if owner not in ("", subject.name, subject.identity) or (
-                quantity.id != id if id else quantity.residual
-            ):
+            is_wanted = quantity.id == id if id else not quantity.residual
+            if not is_wanted:
                 continue
-            value: object
+            value: object = None
             try:
-                value = subject.answer(quantity) if id or subject.is_printed(quantity) else None
+                if id or subject.is_printed(quantity):
+                    value = subject.answer(quantity)
             except KurbelError as error:
                 value = error
             if value is not None:
-                yield (
-                    Answer(quantity, command, subject.name, bool(owner), part=subject.identity),
-                    value,
-                )
+                part = subject.identity
+                yield Answer(quantity, command, subject.name, bool(owner), part=part), value
 
 
 # their values
@@ -185,25 +188,24 @@ def answered(
     together: for the same digits of a row in every run, give the same rows each time.
     """
     batches, failures = binder.bound(columns)
-    found = failures | answers_of(batches, requested)
-    return [found[row] for row in range(len(columns[0].indices))]
+    by_row = failures | answers_of(batches, requested)
+    return [by_row[row] for row in range(len(columns[0].indices))]
 
 
-@np.errstate(all="ignore")
 def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[int, DesignValues]:
     """Return the key values of each of many machines, by its row."""
-    found: dict[int, DesignValues] = {}
-    most = _MOST_LARGE if any(one.command in _LARGE for one in requested) else _MOST
+    by_row: dict[int, DesignValues] = {}
+    is_large = any(answer.command in _LARGE for answer in requested)
+    most = _MOST_LARGE if is_large else _MOST
     for batch in batches:
         if not is_slow(batch.machine, requested):
             for start in range(0, len(batch.rows), most):
-                found |= _together(
-                    batch, np.arange(start, min(start + most, len(batch.rows))), requested
-                )
-        for place, row in enumerate(batch.rows):
-            if row not in found:
-                found[row] = answered_alone(batch.single(place), requested)
-    return found
+                indices = np.arange(start, min(start + most, len(batch.rows)))
+                by_row |= _together(batch, indices, requested)
+        for index, row in enumerate(batch.rows):
+            if row not in by_row:
+                by_row[row] = answered_alone(batch.single(index), requested)
+    return by_row
 
 
 def is_slow(machine: Machine, requested: Sequence[Answer]) -> bool:
@@ -212,108 +214,113 @@ def is_slow(machine: Machine, requested: Sequence[Answer]) -> bool:
     Torsion solves a matrix for each machine; formulas of some mechanisms take no arrays; a long card or a trace has
     so many pieces that it fills an array by itself.
     """
-    if any(one.command == "torsion" for one in requested):
+    if any(answer.command == "torsion" for answer in requested):
         return True
-    return any(cylinder.mechanism.name not in _IN_BATCHES for cylinder in machine.cylinders) or any(
-        chamber.traced
-        or (
-            isinstance(chamber, Card)
-            and sum(len(line.fractions) for line in chamber.lines) > _MOST_POINTS
-        )
-        for chamber in machine.chambers
-    )
+    if any(cylinder.mechanism.name not in _IN_BATCHES for cylinder in machine.cylinders):
+        return True
+    return any(chamber.traced or _is_long(chamber) for chamber in machine.chambers)
+
+
+def _is_long(chamber: Chamber) -> bool:
+    """Return whether a chamber has a card of very many points."""
+    if not isinstance(chamber, Card):
+        return False
+    return sum(len(line.fractions) for line in chamber.lines) > _MOST_POINTS
 
 
 def _together(
-    batch: Batch, places: Indices, requested: Sequence[Answer]
+    batch: Batch, indices: Indices, requested: Sequence[Answer]
 ) -> dict[int, DesignValues]:
     """Return the key values of a batch by its rows, without machines that fail or have a value that is not finite."""
-    if len(places) < _FEWEST:
+    if len(indices) < _FEWEST:
         return {}
-    machine = changed(batch.machine, lambda numbers: numbers[places])
+    machine = changed(batch.machine, lambda numbers: numbers[indices])
     try:
-        columns, other_parts = _values(Case(machine, len(places)), requested)
+        columns, other_parts = _values(Case(machine, len(indices)), requested)
     except (KurbelError, ArithmeticError, RuntimeWarning):
-        half = len(places) // 2
-        return _together(batch, places[:half], requested) | _together(
-            batch, places[half:], requested
-        )
-    fit = np.ones(len(places), dtype=bool)
+        half = len(indices) // 2
+        first = _together(batch, indices[:half], requested)
+        return first | _together(batch, indices[half:], requested)
+
+    # whether a crosshead locks itself is known of a single machine only
+    is_good = np.ones(len(indices), dtype=bool)
     for cylinder in machine.cylinders:
-        fit &= ~np.asarray(may_lock(cylinder))  # whether it does is known of a single machine only
-    each: list[Sequence[DesignValue]] = []
-    for value in columns:
-        if (
-            isinstance(value, tuple) and value and isinstance(value[0], tuple)
-        ):  # a list of each machine
-            each.append(value)
-        elif value is None or isinstance(value, tuple):
-            each.append([value] * len(places))
+        is_good &= ~np.asarray(may_lock(cylinder))
+    values: list[Sequence[DesignValue]] = []
+    for column in columns:
+        if isinstance(column, tuple) and column and isinstance(column[0], tuple):
+            values.append(column)  # a list of each machine
+        elif column is None or isinstance(column, tuple):
+            values.append([column] * len(indices))
         else:
-            fit &= np.isfinite(value)
-            each.append(np.broadcast_to(value, fit.shape).tolist())
-    rows = zip(places.tolist(), zip(*each), fit.tolist())
-    return {batch.rows[place]: Row(values, other_parts) for place, values, good in rows if good}
+            is_good &= np.isfinite(column)
+            values.append(np.broadcast_to(column, is_good.shape).tolist())
+    by_row: dict[int, DesignValues] = {}
+    for index, design, good in zip(indices.tolist(), zip(*values), is_good.tolist()):
+        if good:
+            by_row[batch.rows[index]] = Row(design, other_parts)
+    return by_row
 
 
-@np.errstate(all="ignore")
 def answered_alone(machine: Machine, requested: Sequence[Answer]) -> DesignValues:
     """Return the key values of a machine by itself."""
     try:
-        found, other_parts = _values(Case(machine), requested)
-        for one, value in zip(requested, found):
+        values, other_parts = _values(Case(machine), requested)
+        for answer, value in zip(requested, values):
             if value is not None and not np.isfinite(value).all():
-                raise too_large(one.quantity)
+                raise too_large(answer.quantity)
     except KurbelError as error:
         return error.reason
     except ArithmeticError as error:
         return f"numeric overflow ({error})"
-    return Row(found, other_parts)
+    return Row(values, other_parts)
 
 
 def _values(case: Case, requested: Sequence[Answer]) -> tuple[list[Any], str]:
     """Return the values of a case of one machine or of many, in SI, and how its parts differ; raises KurbelError."""
-    known: dict[tuple[str, str], Subject] = {}
-    for command in dict.fromkeys(one.command for one in requested):
-        known |= {
-            (command, subject.identity): subject
-            for subject in subjects_of(case, command, pistons=True)
-        }
+    subjects: dict[tuple[str, str], Subject] = {}
+    for command in dict.fromkeys(answer.command for answer in requested):
+        for subject in subjects_of(case, command, pistons=True):
+            subjects[command, subject.identity] = subject
     values = []
-    for one in requested:
-        subject = known.get(one.key)
-        value = subject.answer(one.quantity) if subject else None
-        if one.angle:
+    for answer in requested:
+        owner = subjects.get(answer.key)
+        value = owner.answer(answer.quantity) if owner else None
+        if answer.angle:
             values.append(value.degrees if isinstance(value, Extreme) else None)
         else:
             values.append(number_of(value))
-    return values, _other_parts(known, requested)
+    return values, _other_parts(subjects, requested)
 
 
-def _other_parts(known: Mapping[tuple[str, str], Subject], requested: Sequence[Answer]) -> str:
+def _other_parts(subjects: Mapping[tuple[str, str], Subject], requested: Sequence[Answer]) -> str:
     """Return which of the requested parts a machine does not have, and which others have their key values; or ''.
 
-    known: the subjects of a machine by command and identity.
+    subjects: those of a machine by command and identity.
     """
-    missing = [answer.key[1] for answer in requested if answer.key not in known]
     keys = {answer.key for answer in requested}
-    pistons = {id(piston) for subject in known.values() for piston in subject.pistons}
+    pistons = set[int]()
+    for subject in subjects.values():
+        pistons.update(map(id, subject.pistons))
     others: list[str] = []
-    for (command, identity), subject in known.items():
+    for (command, identity), subject in subjects.items():
         if (command, identity) in keys or subject.whole or id(subject) in pistons:
             continue
-        quantities = {
-            answer.quantity.id: answer.quantity
-            for answer in requested
-            if answer.command == command and not answer.alone and answer.subject != _WHOLE
-        }
+        quantities = {}
+        for answer in requested:
+            is_of_parts = not answer.alone and answer.subject != _WHOLE
+            if answer.command == command and is_of_parts:
+                quantities[answer.quantity.id] = answer.quantity
         if any(subject.answer(quantity) is not None for quantity in quantities.values()):
             others.append(subject.identity)
-    if not missing and not others:
-        return ""
-    lacking = f"no {_quoted(missing)}" if missing else ""
-    more = f"but {_quoted(others)}" if others else ""
-    return f"it has other parts: {', '.join(filter(None, (lacking, more)))}"
+
+    missing = [answer.key[1] for answer in requested if answer.key not in subjects]
+    texts = []
+    if missing:
+        texts.append(f"no {_quoted(missing)}")
+    if others:
+        texts.append(f"but {_quoted(others)}")
+    return f"it has other parts: {', '.join(texts)}" if texts else ""
 
 
 def _quoted(names: Iterable[str]) -> str:
@@ -406,29 +413,29 @@ class Study:
     @cached_property
     def first(self) -> Sequence[DesignValue]:
         """The key values of the first valid machine."""
-        found = answered_alone(self.binder.machine, self.answers)
-        return [None] * len(self.answers) if isinstance(found, str) else found.values
+        answered = answered_alone(self.binder.machine, self.answers)
+        return [None] * len(self.answers) if isinstance(answered, str) else answered.values
 
     def heads(self, system: str) -> list[Head]:
         """Return the heads of the key values in a system of units, which the values of the first machine decide.
 
         An id has the name of its subject before it if it is one of several, or was requested of this subject alone.
         """
-        sizes = [0.0] * len(self.answers) if system == "si" else map(size_of, self.first)
-        units = units_of(
-            [(one.kind, one.quantity.family, size) for one, size in zip(self.answers, sizes)],
-            system,
-        )
+        values: Iterable[float] = [0.0] * len(self.answers)
+        if system != "si":
+            values = map(size_of, self.first)
+        sizes = [
+            (answer.kind, answer.quantity.family, size)
+            for answer, size in zip(self.answers, values)
+        ]
         ids = [answer.quantity.id for answer in self.answers if not answer.angle]
         heads = []
-        for one, unit in zip(self.answers, units):
-            id = f"{one.quantity.id}_at" if one.angle else one.quantity.id
-            owned = one.alone or ids.count(one.quantity.id) > 1
-            heads.append(
-                Head(
-                    f"{one.owner}.{id}" if owned else id, unit, one.kind, listed=one.quantity.listed
-                )
-            )
+        for answer, unit in zip(self.answers, units_of(sizes, system)):
+            quantity = answer.quantity
+            id = f"{quantity.id}_at" if answer.angle else quantity.id
+            if answer.alone or ids.count(quantity.id) > 1:
+                id = f"{answer.owner}.{id}"
+            heads.append(Head(id, unit, answer.kind, listed=quantity.listed))
         return heads
 
     def of(self, columns: Sequence[KeyColumn]) -> list[DesignResult]:
@@ -445,18 +452,14 @@ class Study:
 
     def _judged(self, values: Sequence[DesignValue]) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Return the limits that are broken, and those that cannot be judged; values: one for each limit."""
-        known = {limit.name for limit, value in zip(self.limits, values) if value is not None}
-        broken = [
-            name
-            for (name, answer, bound), value in zip(self.limits, values)
-            if isinstance(value, (int, float)) and breaks(answer.quantity, bound, value)
-        ]
-        unjudged = [
-            f"limits.{name}: {no_such_value(name, answer.quantity.id)}"
-            for name, answer, _ in self.limits
-            if name not in known
-        ]
-        return tuple(dict.fromkeys(broken)), tuple(dict.fromkeys(unjudged))
+        judged = {limit.name for limit, value in zip(self.limits, values) if value is not None}
+        broken, unjudged = dict[str, None](), dict[str, None]()
+        for (name, answer, bound), value in zip(self.limits, values):
+            if isinstance(value, (int, float)) and breaks(answer.quantity, bound, value):
+                broken[name] = None
+            if name not in judged:
+                unjudged[f"limits.{name}: {no_such_value(name, answer.quantity.id)}"] = None
+        return tuple(broken), tuple(unjudged)
 
 
 def _limits_of(machine: Machine) -> Iterator[Limit]:
@@ -465,13 +468,14 @@ def _limits_of(machine: Machine) -> Iterator[Limit]:
     for name, bound in machine.limits:
         try:
             with np.errstate(all="ignore"):
-                found = holders(case, name)
+                of_limit = holders(case, name)
         except UsageError as error:
             raise UsageError(f"limits.{name}: {error}") from None
-        if not found:
+        if not of_limit:
             raise UsageError(f"limits.{name}: {no_such_value(name, scoped(name)[1])}")
-        for one in found:
+        for holder in of_limit:
+            subject = holder.subject
             answer = Answer(
-                one.quantity, one.command, one.subject.name, alone=True, part=one.subject.identity
+                holder.quantity, holder.command, subject.name, alone=True, part=subject.identity
             )
             yield Limit(name, answer, bound)

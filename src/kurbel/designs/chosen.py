@@ -4,7 +4,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,26 +44,28 @@ class RowCondition(NamedTuple):
 
     def holds(self, row: Design) -> bool:
         """Return whether it holds; a row without that value keeps no condition."""
-        value = (*row.values, *row.texts)[self.place]
-        known = value if isinstance(self.value, str) else _number(value)
-        return known is not None and _RELATIONS[self.relation](known, self.value)
+        cell = (*row.values, *row.texts)[self.place]
+        value = cell if isinstance(self.value, str) else _number(cell)
+        return value is not None and _RELATIONS[self.relation](value, self.value)
 
 
 def condition_parts(text: str) -> tuple[str, str, str]:
     """Return the column, the relation and the value of a condition; raises UsageError."""
-    found = _CONDITION.fullmatch(keyboard_text(text).strip())
-    if not found:
+    condition = _CONDITION.fullmatch(keyboard_text(text).strip())
+    if not condition:
         raise UsageError(
-            f"--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', got {text_in_one_line(text)!r}"
+            "--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', "
+            f"got {text_in_one_line(text)!r}"
         )
-    name, relation, written = (part.strip() for part in found.groups())
+    name, relation, written = (part.strip() for part in condition.groups())
     return name, relation, written
 
 
 def read_condition(text: str, heads: Sequence[Head], option: str = "--where") -> RowCondition:
     """Read `c_max < 5 m/s` or, for a column of words, `keeps = yes`; raises UsageError."""
     name, relation, written = condition_parts(text)
-    place, where = place_of(name, heads, option), f"{option} {text_in_one_line(text)}"
+    place = place_of(name, heads, option)
+    where = f"{option} {text_in_one_line(text)}"
     head = heads[place]
     if not head.kind:
         if relation not in _OF_WORDS:
@@ -74,9 +76,8 @@ def read_condition(text: str, heads: Sequence[Head], option: str = "--where") ->
             raise UsageError(f"{where}: keeps is yes, no, or empty where a limit cannot be judged")
         return RowCondition(place, relation, written)
     try:
-        value = (
-            math.inf if head.input and written == INFINITE else parse_quantity(written, head.kind)
-        )
+        is_infinite = head.input and written == INFINITE
+        value = math.inf if is_infinite else parse_quantity(written, head.kind)
     except UnitError as error:
         raise UsageError(f"{where}: {error}") from None
     return RowCondition(place, relation, float(convert(value, head.kind, head.unit)))
@@ -85,10 +86,10 @@ def read_condition(text: str, heads: Sequence[Head], option: str = "--where") ->
 def place_of(name: str, heads: Sequence[Head], option: str) -> int:
     """Return which column of single values a name or a printed symbol is; raises UsageError."""
     ids = tuple(head.id for head in heads)
-    owner, _, own = name.rpartition(".")
+    owner, _, symbol = name.rpartition(".")
     meant = [name]
-    if name not in ids:  # a symbol
-        meant += (f"{owner}.{id}".lstrip(".") for id in KEY_VALUES.ids_of(own))
+    if name not in ids:
+        meant += (f"{owner}.{id}".lstrip(".") for id in KEY_VALUES.ids_of(symbol))
     place = next((ids.index(column) for column in meant if column in ids), None)
     if place is None:
         raise UsageError(
@@ -117,7 +118,8 @@ class Aim(NamedTuple):
     def of(self, row: Design) -> tuple[bool, float]:
         """Return whether there is no number, and the cost, of which less is better."""
         value = _number(row.values[self.place])
-        return value is None, (value or 0.0) * (-1 if self.most else 1)
+        cost = value or 0.0
+        return value is None, -cost if self.most else cost
 
 
 def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
@@ -170,9 +172,9 @@ def unbettered(costs: Array) -> Flags:
     else:
         stays = _unbettered_by_blocks(_ranks(points[:, 1:]))
 
-    found = np.empty(count, dtype=bool)
-    found[order] = stays[np.cumsum(is_new) - 1]
-    return found
+    is_unbettered = np.empty(count, dtype=bool)
+    is_unbettered[order] = stays[np.cumsum(is_new) - 1]
+    return is_unbettered
 
 
 def _ranks(points: Array) -> Indices:
@@ -229,30 +231,29 @@ QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 
 def summary_heads(heads: Sequence[Head]) -> tuple[tuple[str, str], ...]:
     """Return names and units of the columns of a summary: quantiles, and the rank correlation with every input."""
-    inputs = [f"r({head.id})" for head in heads if head.input]
-    return tuple(
-        (name, "")
-        for name in ("unit", "rows", "mean", *(f"q{100 * q:g}" for q in QUANTILES), *inputs)
-    )
+    names = ["unit", "rows", "mean"]
+    names += [f"q{100 * q:g}" for q in QUANTILES]
+    names += [f"r({head.id})" for head in heads if head.input]
+    return tuple((name, "") for name in names)
 
 
 def column_summaries(rows: Iterable[Design], heads: Sequence[Head]) -> Iterator[Design]:
     """Yield a row for every column of numbers, over the rows that have a value there."""
-    numbers = [
-        np.array([one if isinstance(one, (int, float)) else np.nan for one in column], dtype=float)
-        for column in zip(*(row.values for row in rows))
-    ]
-    inputs = [values for values, head in zip(numbers, heads) if head.input]
-    for values, head in zip(numbers, heads):
-        there = values[np.isfinite(values)]
-        if head.kind and len(there):
-            figures = (
-                Unit(head.unit),
-                len(there),
-                float(there.mean()),
-                *np.quantile(there, QUANTILES).tolist(),
-            )
-            yield Design(head.id, (*figures, *(_rank_correlation(values, one) for one in inputs)))  # type: ignore[arg-type]
+    columns = [_numbers_of(cells) for cells in zip(*(row.values for row in rows))]
+    inputs = [numbers for numbers, head in zip(columns, heads) if head.input]
+    for numbers, head in zip(columns, heads):
+        finite = numbers[np.isfinite(numbers)]
+        if head.kind and len(finite):
+            figures: list[Any] = [Unit(head.unit), len(finite), float(finite.mean())]
+            figures += np.quantile(finite, QUANTILES).tolist()
+            figures += [_rank_correlation(numbers, input_numbers) for input_numbers in inputs]
+            yield Design(head.id, tuple(figures))  # type: ignore[arg-type]
+
+
+def _numbers_of(cells: Iterable[object]) -> Array:
+    """Return the numbers in a column, nan for all else."""
+    numbers = [cell if isinstance(cell, (int, float)) else np.nan for cell in cells]
+    return np.array(numbers, dtype=float)
 
 
 def _rank_correlation(first: Array, second: Array) -> float | None:

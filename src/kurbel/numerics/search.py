@@ -76,7 +76,7 @@ def roots(function: RealFunction, size: float = 0.0) -> Roots:
         is_inside[start : stop + 1] = True
     alone = x[(y == 0) & ~is_inside]
 
-    # where it changes sign between two samples; what is left there tells a jump from a zero
+    # where it changes sign between two samples; at a zero nothing is left there, at a jump something is
     low = np.flatnonzero((y[:-1] * y[1:] < 0) & ~is_inside[:-1] & ~is_inside[1:])
     high = low + 1
     crossings: Array = np.empty(0)
@@ -105,7 +105,7 @@ def roots(function: RealFunction, size: float = 0.0) -> Roots:
 
 
 def _zero_at_ends(y: Array, rounding: float) -> Array:
-    """Return samples that are exactly zero at either end where only rounding is left there and no root is beside it."""
+    """Return samples that are exactly zero at either end where only rounding is left there and no root is near it."""
     y = y.copy()
     for end, neighbour in ((0, 1), (-1, -2)):
         is_rounding = abs(y[end]) <= rounding

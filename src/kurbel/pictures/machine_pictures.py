@@ -173,7 +173,7 @@ def _on_crank_1(source: Source, name: Words, torque: Array) -> CurveFormula:
 
 def throw_stress(source: Source) -> Iterator[Panel]:
     """Largest combined stress of each part of the crank throw over the cycle."""
-    from kurbel.solver.chapters.stress import PARTS
+    from kurbel.solver.chapters.stress_places import PARTS
 
     names = {}
     for part, (_, words) in PARTS.items():

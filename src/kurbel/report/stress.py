@@ -8,7 +8,8 @@ from kurbel.notes.machine_results import rods_on_pin, shells
 from kurbel.notes.warnings import of_machine
 from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.stress import PARTS, CrankshaftStrength, ThrowStrength
+from kurbel.solver.chapters.stress import CrankshaftStrength, ThrowStrength
+from kurbel.solver.chapters.stress_places import PARTS
 from kurbel.tables.frame import Functions, Subject
 from kurbel.tables.shown import PlaceRow, Places
 

@@ -52,11 +52,17 @@ class Case(NotebookView):
             results = chapter.of(self)
             if len(results) == 1:
                 return results[0][name]
-            why = chapter.each.format(name) if results else why or f"this machine has no {name}"
-        every = tuple(id for chapter in CHAPTERS for id in result_rows(chapter.kind).key_values)
-        raise UsageError(
-            why or f"no key value '{text_in_one_line(name)}'{did_you_mean(name, every)}"
-        )
+            if results:
+                why = chapter.each.format(name)
+            elif not why:
+                why = f"this machine has no {name}"
+        if not why:
+            ids = list[str]()
+            for chapter in CHAPTERS:
+                ids += result_rows(chapter.kind).key_values
+            near = did_you_mean(name, tuple(ids))
+            why = f"no key value '{text_in_one_line(name)}'{near}"
+        raise UsageError(why)
 
     def _chapters_with(self, name: str) -> Iterator[Chapter]:
         """Yield the chapters that have a key value; one is opened only if those before it do not have it."""
@@ -78,9 +84,11 @@ class Case(NotebookView):
 
     def results(self, command: str) -> list[Results]:
         """Return all results of a command; raises what these raise, UsageError where the machine has none."""
-        return [
-            one for chapter in CHAPTERS if chapter.command == command for one in chapter.of(self)
-        ]
+        results = list[Results]()
+        for chapter in CHAPTERS:
+            if chapter.command == command:
+                results += chapter.of(self)
+        return results
 
     def __repr__(self) -> str:
         return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
@@ -88,11 +96,15 @@ class Case(NotebookView):
     @cached_property
     def cylinders(self) -> tuple[CylinderForces, ...]:
         """Motion, forces and key values of every cylinder, in the order of the file; those of equal ones are shared."""
-        found: list[CylinderForces] = []
+        cylinders: list[CylinderForces] = []
         for cylinder in self.machine.cylinders:
-            twin = next((one for one in found if one.twin is None and one.is_like(cylinder)), None)
-            found.append(CylinderForces(self.machine, cylinder, self.count, twin))
-        return tuple(found)
+            twin = None
+            for other in cylinders:
+                if other.twin is None and other.is_like(cylinder):
+                    twin = other
+                    break
+            cylinders.append(CylinderForces(self.machine, cylinder, self.count, twin))
+        return tuple(cylinders)
 
     @cached_property
     def stress(self) -> CrankshaftStrength:

@@ -7,7 +7,7 @@ They are printed in the order of their definition, for people below the `Heading
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
@@ -34,6 +34,7 @@ from kurbel.quantity import (
     ResultCondition,
     ambiguity,
     called,
+    refuse_other_meanings,
 )
 
 V = TypeVar("V")
@@ -116,7 +117,7 @@ def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mappin
     # the angle is a column of every command that has another
     commands = dict.fromkeys(word for row in rows for word in row.quantity.commands)
     phi = QuantityRow(PHI._replace(commands=tuple(commands)), lambda state: state.phi)
-    return _COLUMN_ROWS.setdefault((state, offers), _in_order([phi, *rows]))
+    return _COLUMN_ROWS.setdefault((state, offers), _in_order([phi, *rows], state))
 
 
 def _with_commands(row: QuantityRow, commands: tuple[str, ...]) -> QuantityRow:
@@ -126,11 +127,13 @@ def _with_commands(row: QuantityRow, commands: tuple[str, ...]) -> QuantityRow:
     return row._replace(quantity=row.quantity._replace(commands=commands))
 
 
-def _in_order(rows: Iterable[QuantityRow]) -> dict[str, QuantityRow]:
+def _in_order(rows: Sequence[QuantityRow], owner: type) -> dict[str, QuantityRow]:
     """Return rows by id in the order in which they are printed, the first of those with one id.
 
-    Several `after` the same one keep their order; one without a heading has that of the one before it.
+    Several `after` the same one keep their order; one without a heading has that of the one before it. Raises TypeError
+    for an id that has two meanings.
     """
+    refuse_other_meanings({}, (row.quantity for row in rows), owner.__name__)
     by_id: dict[str, QuantityRow] = {}
     for row in rows:
         by_id.setdefault(row.quantity.id, row)
@@ -424,7 +427,9 @@ def result_rows(
     for offer in key_offers:
         if kind.command in offer.quantity.commands:
             found.append(QuantityRow(offer.quantity.printed_by(kind.command), offer.of))
-    return _ROWS.setdefault((kind, offers, key_offers, closed), Rows(columns, _in_order(found)))
+    return _ROWS.setdefault(
+        (kind, offers, key_offers, closed), Rows(columns, _in_order(found, kind))
+    )
 
 
 def result(values: Array, count: int | None) -> Any:

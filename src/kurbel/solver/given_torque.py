@@ -12,30 +12,30 @@ from kurbel.machine.turning import Harmonics, KnownDiagram, Swing
 from kurbel.numerics.pieces import Pieces
 
 
-def corners(given: KnownDiagram, cycle: float) -> Array:
+def corners(diagram: KnownDiagram, cycle: float) -> Array:
     """Return the angles in degrees between which a torque is smooth; of waves so many that pieces resolve them."""
-    if isinstance(given, Swing):
+    if isinstance(diagram, Swing):
         return np.zeros(0)
-    if isinstance(given, Harmonics):
-        highest = max(1.0, *(order for order, _, _ in given.terms))
+    if isinstance(diagram, Harmonics):
+        highest = max(1.0, *(order for order, _, _ in diagram.terms))
         return np.linspace(0.0, cycle, math.ceil(cycle / 90 * highest) + 1)
-    return np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel()
+    return np.add.outer(np.arange(0.0, cycle, diagram.angles[-1]), diagram.angles).ravel()
 
 
-def torque_on(given: KnownDiagram, pieces: Pieces) -> Array:
+def torque_on(diagram: KnownDiagram, pieces: Pieces) -> Array:
     """Return a torque in N m on pieces: M = mean + Σ c cos νφ + s sin νφ, or points with straight lines between them.
 
     Points repeat from their last angle on; at a jump the side counts that holds the middle of a piece. Of a swing the
     mean alone is known, 0 where it is not.
     """
-    if isinstance(given, Swing):
-        mean = np.zeros(pieces.count) if given.mean is None else given.mean
+    if isinstance(diagram, Swing):
+        mean = np.zeros(pieces.count) if diagram.mean is None else diagram.mean
         return pieces.filled(pieces.of(mean))
-    if isinstance(given, Harmonics):
-        orders, cos, sin = np.array(given.terms).T
+    if isinstance(diagram, Harmonics):
+        orders, cos, sin = np.array(diagram.terms).T
         waves = unit_vector(np.multiply.outer(pieces.degrees, orders)) @ (cos - 1j * sin)
-        return given.mean + waves.real
-    angles, torques = np.array(given.angles), np.array(given.torques)
+        return diagram.mean + waves.real
+    angles, torques = np.array(diagram.angles), np.array(diagram.torques)
     turn = angles[-1] * np.floor(pieces.middle / angles[-1])
     line = np.searchsorted(angles, pieces.middle - turn, side="right") - 1
     rise = (torques[line + 1] - torques[line]) / (angles[line + 1] - angles[line])

@@ -99,22 +99,21 @@ class Indicated(Results):
     @cached_property
     def answers(self) -> dict[str, object]:
         """The key values; standard deviations are those of a sample, with m − 1."""
-        found = dict[str, object]()
+        answers = dict[str, object]()
         if not self._traces:
-            return found
+            return answers
 
-        parts = [
-            (trace.exchange_weights, self._share(trace) * trace.pressures) for trace in self._traces
-        ]
-        exchange = [weights * pressures for weights, pressures in parts if weights is not None]
+        exchange = []
+        for trace in self._traces:
+            if trace.exchange_weights is not None:
+                exchange.append(trace.exchange_weights * (self._share(trace) * trace.pressures))
         if exchange:
             terms = np.concatenate(exchange)
-            found["mean_pressure_exchange"] = lost = float(
-                unless_cancelled(terms.sum(), np.abs(terms).sum())
-            )
-            found["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - lost
-        found["p_rise_max"] = max(trace.steepest for trace in self._traces)
-        return found | self._of_lines() | self._scatter()
+            lost = float(unless_cancelled(terms.sum(), np.abs(terms).sum()))
+            answers["mean_pressure_exchange"] = lost
+            answers["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - lost
+        answers["p_rise_max"] = max(trace.steepest for trace in self._traces)
+        return answers | self._of_lines() | self._scatter()
 
     def _of_lines(self) -> dict[str, object]:
         """Return the key values of compression and expansion: of the head end first, and of a compressor's valves."""
@@ -151,11 +150,8 @@ class Indicated(Results):
         if not self.cycles:
             return {}
         p_i, highest, at, _ = self.cycles
-        mean, deviation, top = (
-            abs(float(p_i.mean())),
-            float(p_i.std(ddof=1)),
-            int(np.argmax(highest)),
-        )
+        mean, deviation = abs(float(p_i.mean())), float(p_i.std(ddof=1))
+        top = int(np.argmax(highest))
         return {
             "cycles_measured": len(highest),
             "mean_pressure_std": deviation,
@@ -168,10 +164,9 @@ class Indicated(Results):
 
     def _share(self, pressure: TracePressure) -> float:
         """Return the share of a chamber in the swept volume."""
-        area = (
-            self.gas.piston.head_area if pressure.setting.head_end else self.gas.piston.crank_area
-        )
-        return float(area * pressure.setting.mechanism.stroke / self.gas.swept_volume)
+        piston, setting = self.gas.piston, pressure.setting
+        area = piston.head_area if setting.head_end else piston.crank_area
+        return float(area * setting.mechanism.stroke / self.gas.swept_volume)
 
     @cached_property
     def cycles(self) -> Cycles | None:
@@ -181,14 +176,16 @@ class Indicated(Results):
             return None
         (count,) = counts
         ends = []
-        for one in self._traces:
-            at, rises = np.mod(one.angles, one.setting.cycle), one.rises(one.each)[0]
-            own = (
-                self._share(one) * (one.each @ one.weights),
-                one.each.max(axis=1),
-                at[one.each.argmax(axis=1)],
+        for trace in self._traces:
+            angles = np.mod(trace.angles, trace.setting.cycle)
+            rises = trace.rises(trace.each)[0]
+            of_cycles = (
+                self._share(trace) * (trace.each @ trace.weights),
+                trace.each.max(axis=1),
+                angles[trace.each.argmax(axis=1)],
+                rises.max(axis=1),
             )
-            ends.append([np.broadcast_to(values, count) for values in (*own, rises.max(axis=1))])
+            ends.append([np.broadcast_to(values, count) for values in of_cycles])
         p_i, p_max, phi_p_max, p_rise_max = np.array(ends).transpose(1, 0, 2)
         traced = sum(self._share(trace) * trace.area for trace in self._traces)
         others = self.gas.work / self.gas.swept_volume - traced  # of an end that has a card, say

@@ -12,7 +12,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.numerics.arithmetic import some, where
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import ValuesById, value, values_for
 from kurbel.solver.cycle import reversals
@@ -68,37 +68,42 @@ class RodLoads(Results):
     @cached_property
     def answers(self) -> ValuesById:
         """The key values."""
-        found, count = ValuesById(), self.drive.count
+        count = self.drive.count
+        answers = ValuesById()
         extremes = self.pieces.extremes([*self.loads.values()]).each(partial(result, count=count))
         peaks = dict(zip(self.loads, extremes))
         for load in _LOADS:
             column, _, side = load.rpartition("_")
-            if peak := peaks.get(f"P_{column}"):
-                size, degrees = (
-                    peak.largest
-                    if side == "compression"
-                    else (-peak.smallest.value, peak.smallest.degrees)
-                )
-                found[f"{load}_max"] = Extreme(where(size > 0, size, 0.0), degrees)
-        if "P_rod" not in self.loads:
-            return found
+            peak = peaks.get(f"P_{column}")
+            if peak is None:
+                continue
+            size, degrees = peak.largest
+            if side != "compression":
+                size, degrees = -peak.smallest.value, peak.smallest.degrees
+            answers[f"{load}_max"] = Extreme(where(size > 0, size, 0.0), degrees)
+        if "P_rod" in self.loads:
+            answers |= self._reversals(peaks["P_rod"])
+        return answers
 
-        found["phi_rod_reversal"] = changes = reversals(
-            self.drive, self.pieces, self.loads["P_rod"]
-        )
-        whole, longest = self._reversed([changes] if count is None else list(changes))
-        found["reversal_angle"], found["reversal_longest"] = (
-            result(whole, count),
-            result(longest, count),
-        )
-        found["reversal_ratio"] = angle = found["reversal_angle"]
+    def _reversals(self, peak: Extremes) -> ValuesById:
+        """The key values of the reversals of the rod load: angles, how long, and the ratio of its extremes."""
+        count = self.drive.count
+        changes = reversals(self.drive, self.pieces, self.loads["P_rod"])
+        reversed_in_all, longest = self._reversed([changes] if count is None else list(changes))
+        angle = result(reversed_in_all, count)
+        answers: ValuesById = {
+            "phi_rod_reversal": changes,
+            "reversal_angle": angle,
+            "reversal_longest": result(longest, count),
+            "reversal_ratio": angle,
+        }
         if some(angle > 0):
-            pressed, pulled = (abs(one.value) for one in peaks["P_rod"])
-            ratio = where(pressed < pulled, pressed, pulled) / where(
-                pressed < pulled, pulled, pressed
-            )
-            found["reversal_ratio"] = where(angle > 0, ratio, 0.0)
-        return found
+            pressed, pulled = abs(peak.largest.value), abs(peak.smallest.value)
+            is_pulled_more = pressed < pulled
+            smaller = where(is_pulled_more, pressed, pulled)
+            larger = where(is_pulled_more, pulled, pressed)
+            answers["reversal_ratio"] = where(angle > 0, smaller / larger, 0.0)
+        return answers
 
     def _reversed(self, changes: list[tuple[float, ...]]) -> Array:
         """Return the degrees per cycle on which the rod is pressed, or pulled, whichever is less, (2, machines).
@@ -106,17 +111,18 @@ class RodLoads(Results):
         All of them, and the longest stretch; 0 where the load does not reverse. changes: of each machine, in degrees.
         """
         counts = [len(change) for change in changes]
-        widths = [
-            np.diff([*change, *(first + self.drive.cycle for first in change[:1])])
-            for change in changes
-        ]
+        # the stretches from change to change, the last over the end of the cycle
+        widths = []
+        for change in changes:
+            closed = [*change, *(first + self.drive.cycle for first in change[:1])]
+            widths.append(np.diff(closed))
         middles = np.concatenate([*map(np.array, changes)]) + np.concatenate(widths) / 2
-        presses = (
-            self.pieces.at(self.loads["P_rod"], np.repeat(np.arange(len(changes)), counts), middles)
-            > 0
-        )
-        found = np.zeros((2, len(changes)))
-        for number, own in enumerate(np.split(presses, np.cumsum(counts)[:-1])):
-            less = min(widths[number][own], widths[number][~own], key=np.sum)
-            found[:, number] = less.sum(), less.max(initial=0.0)
-        return found
+        machine = np.repeat(np.arange(len(changes)), counts)
+        is_pressed = self.pieces.at(self.loads["P_rod"], machine, middles) > 0
+
+        degrees = np.zeros((2, len(changes)))
+        of_machines = np.split(is_pressed, np.cumsum(counts)[:-1])
+        for number, (width, pressed) in enumerate(zip(widths, of_machines)):
+            less = min(width[pressed], width[~pressed], key=np.sum)
+            degrees[:, number] = less.sum(), less.max(initial=0.0)
+        return degrees

@@ -32,6 +32,8 @@ def resampled(pieces: Pieces, forces: CylinderForces, *values: Force) -> Complex
 
 def real_parts(loads: Sequence[Force], shape: tuple[int, ...]) -> Array:
     """Return real and imaginary part of every load, (2 q, nodes, pieces)."""
-    return np.stack(
-        [np.broadcast_to(part, shape) for load in loads for part in (np.real(load), np.imag(load))]
-    )
+    parts = []
+    for load in loads:
+        parts.append(np.broadcast_to(np.real(load), shape))
+        parts.append(np.broadcast_to(np.imag(load), shape))
+    return np.stack(parts)

@@ -36,7 +36,7 @@ class TotalWork(Results):
         "A_Σ",
         "energy",
         "Indicated work of all driving pistons per cycle; of all driven ones if none drives",
-        lambda one: one.indicated_work,
+        lambda machine_work: machine_work.indicated_work,
         plain="A_sum",
         commands=_PRINTED,
     )
@@ -44,7 +44,7 @@ class TotalWork(Results):
         "N_Σ",
         "power",
         "Indicated power of the whole machine: of all driving pistons; of all driven ones if none drives",
-        lambda one: one.per_second(one.indicated_work),
+        lambda machine_work: machine_work.per_second(machine_work.indicated_work),
         plain="N_sum",
         commands=_PRINTED,
     )
@@ -52,27 +52,28 @@ class TotalWork(Results):
         "A_f,Σ",
         "energy",
         "Work lost by friction in all cylinders per cycle",
-        lambda one: one.friction_work,
+        lambda machine_work: machine_work.friction_work,
         plain="A_f,sum",
         commands=("forces",),
-        repeats=lambda one: one.is_of_one_cylinder,
+        repeats=lambda machine_work: machine_work.is_of_one_cylinder,
     )
     power_friction = value(
         "N_f,Σ",
         "power",
         "Power lost by friction in all cylinders",
-        lambda one: one.per_second(one.friction_work),
+        lambda machine_work: machine_work.per_second(machine_work.friction_work),
         plain="N_f,sum",
         commands=("forces",),
-        repeats=lambda one: one.is_of_one_cylinder,
+        repeats=lambda machine_work: machine_work.is_of_one_cylinder,
     )
     mechanical_efficiency = value(
         "η_g",
         "ratio",
         "Mechanical efficiency of the whole machine: work at the shaft and of driven pistons over the work put in",
-        lambda one: one.useful_share,
-        unless=lambda one: (
-            one.useful_share is not None and every(abs(one.useful_share - 1) <= 1e-12)
+        lambda machine_work: machine_work.useful_share,
+        unless=lambda machine_work: (
+            machine_work.useful_share is not None
+            and every(abs(machine_work.useful_share - 1) <= 1e-12)
         ),
         commands=_PRINTED,
     )
@@ -101,12 +102,17 @@ class TotalWork(Results):
             if cylinder.work is None:
                 continue
             cycles = self.machine.revolutions / cylinder.drive.revolutions
-            resisted = cylinder.resistance_work
-            resisted = 0.0 if resisted is None else resisted * cycles
+            resistance = cylinder.resistance_work
             works.append(
-                PistonWorks(cylinder.work_driving * cycles, cylinder.work_driven * cycles, resisted)
+                PistonWorks(
+                    cylinder.work_driving * cycles,
+                    cylinder.work_driven * cycles,
+                    0.0 if resistance is None else resistance * cycles,
+                )
             )
-        return PistonWorks(*(total(*column) for column in zip(*works))) if works else None
+        if not works:
+            return None
+        return PistonWorks(*(total(*of_cylinders) for of_cylinders in zip(*works)))
 
     @property
     def indicated_work(self) -> Any:

@@ -428,7 +428,7 @@ def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
     if frame.columns:
         return columns, ""
 
-    # what was asked for is shown to people, too
+    # what is requested is shown to people, too
     minor = set(declared)
     if not subject.idle:
         minor = _minor_columns(subject, [column.id for column in columns])

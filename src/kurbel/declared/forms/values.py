@@ -64,8 +64,8 @@ class Form(ABC):
 
     @cached_property
     def expected(self) -> str:
-        """For 'expected …'."""
-        raise NotImplementedError
+        """For 'expected …'; what is written, where a form has no other words for it."""
+        return self.written
 
     @cached_property
     def parts(self) -> "tuple[tuple[str, Form], ...]":

@@ -12,6 +12,7 @@ one does not vibrate with the torque: both masses turn alike, and
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -47,12 +48,12 @@ class Harmonic(NamedTuple):
     amplification: float
 
 
-def natural_order(coupling: Coupling, own: Array, omega: Number) -> Array:
-    """Return the natural order √(k (1/J₁ + 1/J₂))/ω_n of cranks and driven inertia, J₁ in kg m²."""
-    return np.sqrt(coupling.stiffness * (1 / own + 1 / coupling.inertia)) / omega
+def natural_order(coupling: Coupling, ahead: Array, omega: Number) -> Array:
+    """Return the natural order √(k (1/J₁ + 1/J₂))/ω_n of cranks and driven inertia; ahead: J₁ in kg m²."""
+    return np.sqrt(coupling.stiffness * (1 / ahead + 1 / coupling.inertia)) / omega
 
 
-class CouplingTorque(Results):
+class CouplingTorque(Results, ABC):
     """Extremes of the torque in a coupling; torque: its samples in N m with their pieces."""
 
     torque: tuple[Pieces, Array]
@@ -82,13 +83,13 @@ class CouplingTorque(Results):
         pieces, torque = self.torque
         return pieces.extremes(torque[None]).each(self.result)[0]
 
+    @abstractmethod
     def result(self, values: Array) -> Any:
         """Return values (n,), nan for machines without a solution; for one machine a float."""
-        raise NotImplementedError
 
+    @abstractmethod
     def amplified(self) -> Number | None:
         """Return the swing of the torque over that in a rigid coupling; None where that does not swing."""
-        raise NotImplementedError
 
 
 class StiffCoupling(CouplingTorque):
@@ -119,29 +120,27 @@ class ElasticCoupling(SpeedLine, CouplingTorque):
     no motion repeats.
     """
 
-    def __init__(self, effort: TurningEffort, own: Array, law: SpeedLaw | None) -> None:
+    def __init__(self, effort: TurningEffort, ahead: Array, law: SpeedLaw | None) -> None:
         coupling, pieces = effort.machine.coupling, effort.pieces
         assert coupling is not None
-        self._omega, stiffness, self._damping, driven = (
-            np.broadcast_to(one, own.shape)
-            for one in (effort.omega, coupling.stiffness, coupling.damping, coupling.inertia)
-        )
-        self.effort, self._order, self._step = (
-            effort,
-            natural_order(coupling, own, effort.omega),
-            360 / effort.cycle,
-        )
-        self._masses, self._stiffness = np.stack((own, driven)), stiffness
-        self.load_slope = np.zeros(own.shape) if law is None else law.steepness / effort.omega
+        self.effort = effort
+        self._omega = np.broadcast_to(effort.omega, ahead.shape)
+        self._stiffness = np.broadcast_to(coupling.stiffness, ahead.shape)
+        self._damping = np.broadcast_to(coupling.damping, ahead.shape)
+        self._masses = np.stack((ahead, np.broadcast_to(coupling.inertia, ahead.shape)))
+        self._order = natural_order(coupling, ahead, effort.omega)
+        self._step = 360 / effort.cycle
+        self.load_slope = np.zeros(ahead.shape)
+        if law is not None:
+            self.load_slope = law.steepness / effort.omega
+        # on either mass, less the mean
         load = effort.load - pieces.of(effort.mean)
-        self._torques = np.stack(
-            (effort.true_excess.torque + load, -load)
-        )  # on either mass, less the mean
+        self._torques = np.stack((effort.true_excess.torque + load, -load))
 
-        nothing = np.zeros((2, *own.shape))
+        nothing = np.zeros((2, *ahead.shape))
         chain = Chain(
             inertias=self._masses,
-            stiffnesses=stiffness[None],
+            stiffnesses=self._stiffness[None],
             segment_damping=self._damping[None],
             mass_damping=nothing,
             loss=nothing[:1],
@@ -149,20 +148,20 @@ class ElasticCoupling(SpeedLine, CouplingTorque):
             segment_inertias=nothing[:1],
         )
         equation = ChainEquation(chain, self._order, effort.omega, pieces, self._torques, law, 1)
-        self._found = periodic(equation, equation.pieces)
-        pieces, y, failed = self._found.pieces, self._found.samples, self._found.failed
+        self._course = periodic(equation, equation.pieces)
+        pieces, y, failed = self._course.pieces, self._course.samples, self._course.failed
         if law is None:  # any mean speed would do: it is the nominal one
-            y[1:] -= (self._masses * pieces.mean(y[1]) / own)[:, None, pieces.machine]
+            y[1:] -= (self._masses * pieces.mean(y[1]) / ahead)[:, None, pieces.machine]
         torque = equation.torques(y, pieces)[0]
         if law:
             failed = failed | (law.mean == 0)
         else:
             nearest = np.maximum(np.rint(self._order / self._step), 1) * self._step
-            endless = ~(
-                pieces.largest(torque) < _ENDLESS * effort.pieces.largest(self._torques).sum(axis=0)
-            )
+            limit = _ENDLESS * effort.pieces.largest(self._torques).sum(axis=0)
+            is_endless = ~(pieces.largest(torque) < limit)
             meets = (self._damping == 0) & (np.abs(self._order / nearest - 1) < _MEETS)
-            resonates, failed = meets & (failed | endless), failed | (meets & endless)
+            resonates = meets & (failed | is_endless)
+            failed = failed | (meets & is_endless)
             if effort.count is None and resonates[0]:
                 raise NoSolutionError(
                     f"the coupling is in resonance with harmonic {nearest[0]:g} of the torque, without damping: give "
@@ -174,10 +173,10 @@ class ElasticCoupling(SpeedLine, CouplingTorque):
                     "look at their units"
                 )
         if effort.count is None:
-            self._found.refuse()
+            self._course.refuse()
         self.torque = pieces, pieces.of(effort.mean) + torque
-        self.alpha = pieces, (equation.known(pieces)[0] - torque) / pieces.of(own)
-        u = y[1] / pieces.of(own * effort.omega**2)
+        self.alpha = pieces, (equation.known(pieces)[0] - torque) / pieces.of(ahead)
+        u = y[1] / pieces.of(ahead * effort.omega**2)
         super().__init__(effort, pieces, u, 1 + pieces.mean(u), failed, -1.0)
 
     @property
@@ -188,17 +187,18 @@ class ElasticCoupling(SpeedLine, CouplingTorque):
     @cached_property
     def growth(self) -> Any:
         """Logarithm of what is left of a small disturbance after a cycle."""
-        return self.result(self._found.growth)
+        return self.result(self._course.growth)
 
     def amplified(self) -> Number | None:
         """Return the swing of the torque over that of J₂ (M − L)/(J₁ + J₂) + L; None where that does not swing."""
-        of, (own, driven) = self.effort.pieces.of, self._masses
-        rigid = (self._torques[0] * of(driven) - self._torques[1] * of(own)) / of(own + driven)
-        high, _, low, _ = (extreme[0] for extreme in self.effort.pieces.extremes(rigid[None]))
+        pieces, (ahead, driven) = self.effort.pieces, self._masses
+        M, L = self._torques[0], -self._torques[1]
+        rigid = (M * pieces.of(driven) + L * pieces.of(ahead)) / pieces.of(ahead + driven)
+        high, _, low, _ = (extreme[0] for extreme in pieces.extremes(rigid[None]))
         if self.effort.count is None and high[0] == low[0]:
             return None
-        found = self.torque_extremes
-        return (found.largest.value - found.smallest.value) / self.result(high - low)
+        highest, lowest = self.torque_extremes.largest, self.torque_extremes.smallest
+        return (highest.value - lowest.value) / self.result(high - low)
 
     @property
     def resonances(self) -> tuple[Harmonic, ...]:
@@ -206,27 +206,27 @@ class ElasticCoupling(SpeedLine, CouplingTorque):
 
         With a load c ω₂, a₁ = −Ω² J₁ and a₂ = −Ω² J₂ + iΩ c, T = s (M₁/a₁ − M₂/a₂)/(1 + s/a₁ + s/a₂), s = k + iΩ d.
         """
-        pieces, (order,), masses = self.effort.pieces, self._order, self._masses
-        low, high = (order * (1 + side * _NEAR) / self._step for side in (-1, 1))
+        pieces, masses = self.effort.pieces, self._masses
+        (order,) = self._order
+        low = order * (1 - _NEAR) / self._step
+        high = order * (1 + _NEAR) / self._step
         orders = self._step * np.arange(max(np.ceil(low), 1), np.floor(high) + 1)
-        first, second = acting = amplitudes(pieces, self._torques, orders)[..., 0]
-        frequencies = orders * self._omega[0]
-        own, driven = -np.multiply.outer(masses[:, 0], frequencies**2).astype(complex)
-        driven += 1j * frequencies * self.load_slope[0]
-        spring = self._stiffness[0] + 1j * frequencies * self._damping[0]
+        acting = amplitudes(pieces, self._torques, orders)[..., 0]
+        M_1, M_2 = acting
+
+        # T of the sentence above, multiplied by a₁ a₂
+        Omega = orders * self._omega[0]
+        a_1, a_2 = -np.multiply.outer(masses[:, 0], Omega**2).astype(complex)
+        a_2 += 1j * Omega * self.load_slope[0]
+        s = self._stiffness[0] + 1j * Omega * self._damping[0]
         with np.errstate(all="ignore"):
-            passed = np.abs(
-                spring * (first * driven - second * own) / (own * driven + spring * (own + driven))
-            )
+            T = np.abs(s * (M_1 * a_2 - M_2 * a_1) / (a_1 * a_2 + s * (a_1 + a_2)))
 
         amplitude, distance = np.abs(acting).sum(axis=0), orders / order - 1
         rigid = (np.abs(acting) * masses[::-1]).sum(axis=0) / masses.sum()
-        gain = passed / np.where(rigid > 0, rigid, np.inf)
-        size = np.sqrt(
-            2 * pieces.mean(self._torques**2)
-        ).sum()  # the amplitude of one wave with their mean squares
-        near = (amplitude > _WORTH * size) & (gain >= _AMPLIFIED)
-        return tuple(
-            Harmonic(*row)
-            for row in np.stack((orders, distance, amplitude, gain))[:, near].T.tolist()
-        )
+        gain = T / np.where(rigid > 0, rigid, np.inf)
+        # the amplitude of one wave with their mean squares
+        size = np.sqrt(2 * pieces.mean(self._torques**2)).sum()
+        is_near = (amplitude > _WORTH * size) & (gain >= _AMPLIFIED)
+        rows = np.stack((orders, distance, amplitude, gain))[:, is_near].T.tolist()
+        return tuple(Harmonic(*row) for row in rows)

@@ -55,37 +55,31 @@ def amplitudes(pieces: Pieces, values: Array, orders: Array) -> ComplexArray:
     """
     # e^{iwx} on −1 … 1 is a polynomial of degree w + 11.4 w^⅓ + 3 (J_n(w) < 1e-16 beyond), that of the samples counts
     # half, since its last coefficients are small; n Lobatto nodes integrate the degree 2n − 3 exactly
-    count, fastest = (
-        len(pieces.rule.nodes),
-        math.radians(pieces.half.max() * orders.max(initial=1.0)),
-    )
+    count = len(pieces.rule.nodes)
+    fastest = math.radians(pieces.half.max() * orders.max(initial=1.0))
     fine = rule(math.ceil((count / 2 + fastest + 11.4 * fastest ** (1 / 3) + 6) / 2))
     to_fine = fine.weights[:, None] * (chebyshev(fine.nodes, count) @ pieces.rule.series)
-    found, step = (
-        np.empty((len(values), len(orders), len(pieces.half)), dtype=complex),
-        360.0 / pieces.cycle,
-    )
+    integrals = np.empty((len(values), len(orders), len(pieces.half)), dtype=complex)
+    step = 360.0 / pieces.cycle
     for start in range(0, len(pieces.half), _AT_ONCE):
         part = slice(start, start + _AT_ONCE)
         half = pieces.half[part]
-        degrees = pieces.right_angle[part] + (
-            pieces.offset[part] + half * (1 + fine.nodes[:, None])
-        )
-        shares, turn, before = (
-            to_fine @ (values[..., part] * half),
-            unit_vector(-step * degrees),
-            0.0,
-        )
+        from_left = pieces.offset[part] + half * (1 + fine.nodes[:, None])
+        degrees = pieces.right_angle[part] + from_left
+        shares = to_fine @ (values[..., part] * half)
+        # e^{−iνφ} of an order from that of the order before it, computed anew now and then
+        turn = unit_vector(-step * degrees)
         waves = shares.astype(complex)
+        before = 0.0
         for index, order in enumerate(orders.tolist()):
             if order == before + step and (index + 1) % _RENEWED:
                 waves *= turn
             else:
                 waves = shares * unit_vector(-order * degrees)
             before = order
-            found[:, index, part] = waves.sum(axis=1)
-    whole = np.add.reduceat(found, pieces.first, axis=2)
-    return np.asarray(whole * (2 / pieces.cycle), dtype=complex)
+            integrals[:, index, part] = waves.sum(axis=1)
+    of_cycle = np.add.reduceat(integrals, pieces.first, axis=2)
+    return np.asarray(of_cycle * (2 / pieces.cycle), dtype=complex)
 
 
 class Orders(NamedTuple):
@@ -119,8 +113,11 @@ class CylinderOrders(NamedTuple):
     @property
     def area(self) -> Any:
         """R A in m³ of crank radius and head-end area, by which torques become tangential pressures."""
-        pistons, crank = self.forces.drive.cylinder.pistons, self.forces.drive.mechanism.crank
-        return math.pi / 4 * pistons[0].bore ** 2 * crank if pistons else None
+        drive = self.forces.drive
+        pistons = drive.cylinder.pistons
+        if not pistons:
+            return None
+        return math.pi / 4 * pistons[0].bore ** 2 * drive.mechanism.crank
 
 
 class MachineOrders(Results):
@@ -144,43 +141,39 @@ class MachineOrders(Results):
         A torque of a shorter cycle has only some of the orders. What is rounding of the largest, or of the torques of
         this size in N m that it is the sum of, is 0: cosines, and sines.
         """
-        moved = np.zeros(()) if inertia is None else inertia
-        values = np.stack([pieces.filled(one) for one in (torque - moved, moved)])
+        of_masses = np.zeros(()) if inertia is None else inertia
+        values = np.stack([pieces.filled(torque - of_masses), pieces.filled(of_masses)])
         present = np.flatnonzero(is_whole(self.orders * round(pieces.cycle / 360.0)))
-        found = np.zeros((2, len(self.orders), pieces.count), dtype=complex)
-        found[:, present] = amplitudes(pieces, values, self.orders[present])
-        largest = np.maximum(
-            np.abs(found).max(axis=(0, 1)), np.abs(pieces.mean(values)).max(axis=0)
-        )
-        found = unless_cancelled(found, np.maximum(size, largest), _ROUNDING)
-        gas, moved = found[..., 0] if self.effort.count is None else found
-        return Orders(self.orders, gas, None if inertia is None else moved, largest)
+        waves = np.zeros((2, len(self.orders), pieces.count), dtype=complex)
+        waves[:, present] = amplitudes(pieces, values, self.orders[present])
+
+        mean_size = np.abs(pieces.mean(values)).max(axis=0)
+        largest = np.maximum(np.abs(waves).max(axis=(0, 1)), mean_size)
+        waves = unless_cancelled(waves, np.maximum(size, largest), _ROUNDING)
+        gas, masses = waves[..., 0] if self.effort.count is None else waves
+        return Orders(self.orders, gas, None if inertia is None else masses, largest)
 
     @cached_property
     def cylinders(self) -> tuple[CylinderOrders, ...]:
         """Those of every cylinder in which a force acts; one is computed of all that work alike."""
-        found: dict[str, CylinderOrders] = {}
+        by_name: dict[str, CylinderOrders] = {}
         for group in self.effort.groups:
             samples = group[0].samples
-            own = self._orders_of(
-                group[0].pieces, samples.M, torque_of_inertia(samples) if moves(group) else None
-            )
-            found |= {forces.drive.name: CylinderOrders(forces, own) for forces in group}
-        return tuple(
-            found[cylinder.drive.name]
-            for cylinder in self.effort.cylinders
-            if cylinder.drive.name in found
-        )
+            inertia = torque_of_inertia(samples) if moves(group) else None
+            orders = self._orders_of(group[0].pieces, samples.M, inertia)
+            for forces in group:
+                by_name[forces.drive.name] = CylinderOrders(forces, orders)
+        names = [cylinder.drive.name for cylinder in self.effort.cylinders]
+        return tuple(by_name[name] for name in names if name in by_name)
 
     @cached_property
     def machine(self) -> Orders:
         """Those of the turning effort, with the losses of the machine."""
-        effort, sizes = self.effort, [cylinder.own.largest for cylinder in self.cylinders]
-        inertia = (
-            effort.sampled(effort.inertia_terms)
-            if effort.given is None and effort.inertia_terms
-            else None
-        )
+        effort = self.effort
+        sizes = [cylinder.own.largest for cylinder in self.cylinders]
+        inertia = None
+        if effort.given is None and effort.inertia_terms:
+            inertia = effort.sampled(effort.inertia_terms)
         return self._orders_of(effort.pieces, effort.M, inertia, np.sum(sizes, axis=0))
 
     M_mean = value(
@@ -196,10 +189,12 @@ class MachineOrders(Results):
 
         None where the torque is uniform.
         """
-        effort, carried = self.effort, (np.abs(self.machine.whole) ** 2).sum(axis=0) / 2
-        swing = effort.result(effort.pieces.mean((effort.M - effort.pieces.of(effort.mean)) ** 2))
-        varies = swing > 1e-28 * self.M_mean**2
-        return carried / where(varies, swing, math.nan) if some(varies) else None
+        effort = self.effort
+        carried = (np.abs(self.machine.whole) ** 2).sum(axis=0) / 2
+        above_mean = effort.M - effort.pieces.of(effort.mean)
+        variance = effort.result(effort.pieces.mean(above_mean**2))
+        varies = variance > 1e-28 * self.M_mean**2
+        return carried / where(varies, variance, math.nan) if some(varies) else None
 
     @key_value("ν_H", "ratio", listed=True)
     def major_orders(self) -> Any:
@@ -207,14 +202,12 @@ class MachineOrders(Results):
 
         None with fewer than two cylinders.
         """
-        positions = [
-            position(forces) * np.ones(self.effort.pieces.count) for forces, *_ in self.cylinders
-        ]
-        if len(positions) < 2:
+        if len(self.cylinders) < 2:
             return None
-        together = np.abs(
-            sum(unit_vector(np.multiply.outer(self.orders, one)) for one in positions)
-        )
-        in_phase = together >= (1 - _IN_PHASE) * len(positions)
-        each = tuple(tuple(self.orders[one].tolist()) for one in in_phase.T)
-        return each[0] if self.effort.count is None else each
+        resultant: Any = 0.0
+        for forces, *_ in self.cylinders:
+            positions = position(forces) * np.ones(self.effort.pieces.count)
+            resultant = resultant + unit_vector(np.multiply.outer(self.orders, positions))
+        are_in_phase = np.abs(resultant) >= (1 - _IN_PHASE) * len(self.cylinders)
+        of_machines = tuple(tuple(self.orders[major].tolist()) for major in are_in_phase.T)
+        return of_machines[0] if self.effort.count is None else of_machines

@@ -1,35 +1,14 @@
 """Strength of a crankshaft, throw by throw, between two bearings or overhung: stresses over the whole cycle (G).
 
-Stresses are looked at in these places, part by part:
-
-    pin        middle          bent by A on the lever a, twisted by M_p = M_A + A_T r (G, whose M_A is 0)
-               rod 1, rod 2    the same under each rod, where several are on the pin
-               at web A, B     bent by A, and by A and the forces on the pin; twisted by M_p as all of the pin
-    web        wide face       compressed and bent in the plane of the throw, twisted: decisive for the shape (G)
-               narrow face     compressed and bent out of that plane, twisted less
-               corner          compressed and bent both ways, not twisted
-    journal A  at web          bent by A on the lever up to web A, twisted by M_A, what the throws before it deliver
-    journal B  at web          bent by A and the pin, twisted by M_B; the shaft as far as B counts as journal
-               at flywheel     the same, where the flywheel is before B
-               in bearing      bent by the flywheel overhung beyond B, twisted by M_B
-
-The flywheel is behind the last throw; of the others journal B is examined at the web alone. Along the pin and along
-each journal the moments are straight lines from load to load, under the same torsion: their vector sum is largest at a
-load or at an end, so that no section between these places is strained more. The forces of the bearings act in their
-middles.
-
-An overhung crank has a pin clamped at its only end, in web A, which is loaded as a web B with nothing before the pin;
-journal A is bent by F and twisted by T r, at the web and in its bearing, and the shaft beyond counts as journal B.
-Where cranks are at both ends of the shaft, the part between the bearings is bent by both.
-
-A web is bent out of the plane of the throw most at one end of its arm, at the axis of the pin or at that of the shaft.
+Where stresses are looked at, and which they are, is in `stress_places`.
 """
 
 from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -41,10 +20,11 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import taken
 from kurbel.machine.crankshaft import Crankshaft
-from kurbel.numerics.arithmetic import every, magnitude, some, where
+from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.extreme import Extreme, chosen, largest, smallest
 from kurbel.numerics.pieces import Pieces, common, highest, resolved
 from kurbel.quantity import Heading, ValuesById, value, values_for
+from kurbel.solver.chapters.stress_places import PARTS, Opposite, Place, places
 from kurbel.solver.effort import position
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
@@ -53,197 +33,8 @@ from kurbel.solver.state import State
 from kurbel.solver.throw_loads import pin_load, resampled, state_at
 from kurbel.solver.vector import Force
 
-PARTS = {
-    "pin": ("pin", "the crank pin"),
-    "web_A": ("w,A", "web A"),
-    "web_B": ("w,B", "web B"),
-    "journal_A": ("j,A", "journal A"),
-    "journal_B": ("j,B", "journal B"),
-}
-"""Parts of a crankshaft: the index of their symbols, and what they are called in a sentence."""
 _BEARINGS = {part: PARTS[part] for part in ("pin", "journal_A", "journal_B")}
 """Parts that are pressed: by the rod, and by bearings A and B."""
-
-# Stresses in a section: numbers or arrays in N, N m and m give Pa. They divide by one length at a time: the product of
-# three tiny ones would be zero.
-
-
-class Place(NamedTuple):
-    """The stresses in Pa at one place of a part; None for what there cannot be there.
-
-    compression is positive, and negative where the web is pulled; bendings and torsion are magnitudes. normal: all
-    normal stress together, a magnitude. alpha: α₀ of Bach's combination. degrees: crank angle of the forces, if one.
-    """
-
-    part: str
-    name: str
-    alpha: Number
-    compression: Number | None
-    bending_in_plane: Number | None
-    bending_out_of_plane: Number | None
-    torsion: Number | None
-    normal: Number
-    degrees: Any = None
-
-    @property
-    def combined(self) -> Any:
-        """Combined stress 0.35 σ + 0.65 √(σ² + 4 (α₀ τ)²) in Pa after Bach (G, "Resultierende Beanspruchung")."""
-        torsion = 0.0 if self.torsion is None else self.torsion
-        return 0.35 * magnitude(self.normal) + 0.65 * np.hypot(
-            self.normal, 2 * self.alpha * torsion
-        )
-
-    @property
-    def von_mises(self) -> Any:
-        """Equivalent stress √(σ² + 3 τ²) in Pa after von Mises."""
-        return np.hypot(self.normal, 0.0 if self.torsion is None else math.sqrt(3) * self.torsion)
-
-    def of_state(self, number: int, degrees: float) -> Place:
-        """Return the place in one of several states, whose forces act at a crank angle."""
-        stresses = self._asdict()
-        in_state: dict[str, Any] = {
-            name: float(stresses[name][number]) for name in stresses if np.ndim(stresses[name])
-        }
-        return self._replace(**in_state, degrees=degrees)
-
-
-class Opposite(NamedTuple):
-    """The other throw of a shaft with cranks at both ends; turn: e^{−i(γ₂ − γ₁)}, from its frame to the first one's."""
-
-    body: FreeBody
-    turn: Any
-
-
-def places(
-    body: FreeBody, is_last: bool = True, opposite: Opposite | None = None
-) -> Iterator[Place]:
-    """Yield the places of a throw under its forces; those of the journals only where their diameter is given.
-
-    is_last: whether the flywheel is beyond its bearing B, or before it. α₀ is 1 for what is round (G, for the pin), and
-    that of the allowable stresses for the webs.
-    """
-    shaft = body.shaft
-    inner, outer = (
-        shaft.web_distance + side * shaft.web_thickness / 2 for side in (-1, 1)
-    )  # faces of a web
-    # in the middle of the pin M_b = a √(A_T² + A_D²) and M_d = A_T r (G)
-    several = len(body.rods) > 1
-    under_rods = (
-        {f"rod {number}": u for number, (_, u) in enumerate(body.rods, 1)}
-        if several
-        else {"middle": 0.0}
-    )
-    if not shaft.overhung:
-        sections = {**under_rods, "at web A": -inner, "at web B": inner}
-    elif several:
-        sections = {**under_rods, "at web A": inner}
-    else:
-        sections = {"at web A": inner}
-    for name, u in sections.items():
-        yield _round("pin", name, body.moments_at(u), body.torque_pin, shaft.pin_diameter)
-
-    at_pin, at_B = magnitude(body.torque_pin), magnitude(body.torque_B)
-    if not shaft.overhung:
-        at_A: Number = 0.0 if body.torque_A is None else magnitude(body.torque_A)
-        moments = body.moments_at(-shaft.web_distance)
-        yield from _web("web_A", shaft, body.before_pin.real, moments, _larger(at_pin, at_A))
-    last_web = "web_A" if shaft.overhung else "web_B"
-    yield from _web(
-        last_web, shaft, body.along_web, body.moments_at(shaft.web_distance), _larger(at_pin, at_B)
-    )
-    if shaft.journal_diameter is not None:
-        yield from _journals(body, shaft.journal_diameter, outer, is_last, opposite)
-
-
-def _journals(
-    body: FreeBody, diameter: Number, outer: Number, is_last: bool, opposite: Opposite | None
-) -> Iterator[Place]:
-    """Yield the places of the journals; outer: from the middle of the pin to the outer face of a web."""
-    shaft, f = body.shaft, body.shaft.flywheel_position
-    if shaft.overhung:
-        yield _round("journal_A", "at web", body.moments_at(outer), body.torque_B, diameter)
-        yield _round("journal_A", "in bearing", body.moments_at(shaft.a), body.torque_B, diameter)
-    else:
-        yield _round("journal_A", "at web", body.moments_at(-outer), body.torque_A, diameter)
-        yield _round("journal_B", "at web", body.moments_at(outer), body.torque_B, diameter)
-    if not is_last:
-        return
-    if opposite is not None:
-        # at the flywheel between the bearings, or at bearing B, by what acts on either side
-        before_B = where(f < 0, f, 0.0)
-        bending = (
-            body.moments_at(shaft.b + before_B)
-            + opposite.body.moments_at(shaft.a - before_B) * opposite.turn
-        )
-        torsion = _larger(magnitude(body.torque_B), magnitude(opposite.body.torque_B))
-        yield _round("journal_B", "at flywheel", bending, torsion, diameter)
-        return
-    beyond = f >= 0  # of bearing B, in whose middle the bending is G f
-    bending = np.where(beyond, body.weight * f, body.moments_at(shaft.b + f))
-    name = "in bearing" if every(beyond) else "at flywheel"
-    yield _round("journal_B", name, bending, body.torque_B, diameter)
-
-
-def _larger(first: Number, second: Number) -> Number:
-    return where(first >= second, first, second)
-
-
-def _round(part: str, name: str, moments: Force, torque: Number | None, diameter: Number) -> Place:
-    """Stresses at the surface of a round section, whose bendings add up as vectors (G).
-
-    Bending σ = 32 M/(π d³), torsion τ = 16 M/(π d³).
-    """
-    bendings = (
-        magnitude(32 / math.pi * one / diameter / diameter / diameter)
-        for one in (moments.real, moments.imag)
-    )
-    in_plane, out_of_plane = bendings
-    torsion = (
-        None
-        if torque is None
-        else magnitude(16 / math.pi * torque / diameter / diameter / diameter)
-    )
-    return Place(
-        part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane)
-    )
-
-
-def _web(
-    part: str, shaft: Crankshaft, force: Number, moments: Force, out_of_plane: Number
-) -> Iterator[Place]:
-    """Stresses of a web, a rectangle t × w: σ = S/(t w) + 6 M/(b h²) across h (G, webs, "auf Druck", "auf Biegung").
-
-    force: along it; moments: in-plane bending and twist. α₀ = k_b/(1.3 k_d), or 1 where one of the allowable stresses
-    is not known (G): with it a part under torsion alone is fully used just where τ reaches k_d.
-
-    Its torsion is τ = (9/2) M_d/(t² w) in the middle of the wide faces and (9/2) M_d/(t w²) in that of the narrow ones
-    (G, webs, "auf Drehung"): Bach's rounded factor; de Saint-Venant's own is 4.81 for a square and 3 for a strip.
-    """
-    t, w, allowed, twisting = (
-        shaft.web_thickness,
-        shaft.web_width,
-        shaft.allowable_bending,
-        shaft.allowable_torsion,
-    )
-    alpha = 1.0 if allowed is None or twisting is None else allowed / (1.3 * twisting)
-    direct, twist = force / t / w, 4.5 * magnitude(moments.imag)
-    wide, narrow = magnitude(6 * moments.real / w / t / t), 6 * out_of_plane / t / w / w
-    yield Place(
-        part, "wide face", alpha, direct, wide, None, twist / t / t / w, magnitude(direct) + wide
-    )
-    yield Place(
-        part,
-        "narrow face",
-        alpha,
-        direct,
-        None,
-        narrow,
-        twist / w / w / t,
-        magnitude(direct) + narrow,
-    )
-    yield Place(
-        part, "corner", alpha, direct, wide, narrow, None, magnitude(direct) + wide + narrow
-    )
 
 
 class StressColumns(AtAngles):
@@ -292,31 +83,29 @@ class StressColumns(AtAngles):
         """The columns by id; of the stresses those of the parts that are examined."""
         body = self._body
         loaded = [state for state in self._states if state.drive.has_force]
+        nothing = np.zeros(len(self.phi))
         columns: ValuesById = {
-            "D": sum(state.D for state in loaded) + np.zeros(len(self.phi)),
-            "T": sum(state.T for state in loaded) + np.zeros(len(self.phi)),
+            "D": sum(state.D for state in loaded) + nothing,
+            "T": sum(state.T for state in loaded) + nothing,
             "A_D": body.A.real,
             "A_T": body.A.imag,
             "B_D": body.B.real,
             "B_T": body.B.imag,
         }
         if any(state.T_pin is not None for state in loaded):
-            columns["T_pin"] = sum(state.tangential_at_pin for state in loaded) + np.zeros(
-                len(self.phi)
-            )
+            columns["T_pin"] = sum(state.tangential_at_pin for state in loaded) + nothing
         if self._torques:
-            columns["M_A"] = np.zeros(len(self.phi)) if body.torque_A is None else body.torque_A
+            columns["M_A"] = nothing if body.torque_A is None else body.torque_A
             columns["M_B"] = body.torque_B
         for place in self._places:
-            for id, stress in (
-                (f"sigma_{place.part}", place.combined),
-                (f"mises_{place.part}", place.von_mises),
-            ):
-                columns[id] = np.maximum(columns.get(id, 0.0), stress)
+            # of a part the largest stress of its places
+            bach, mises = f"sigma_{place.part}", f"mises_{place.part}"
+            columns[bach] = np.maximum(columns.get(bach, 0.0), place.combined)
+            columns[mises] = np.maximum(columns.get(mises, 0.0), place.von_mises)
         return columns
 
 
-class Strength(Results):
+class Strength(Results, ABC):
     """Statics and stresses of a throw, or of all throws of a machine; of many machines values are (machines,)."""
 
     command = "stress"
@@ -405,13 +194,13 @@ class Strength(Results):
     count: int | None
 
     @property
+    @abstractmethod
     def answers(self) -> ValuesById:
         """The key values by id."""
-        raise NotImplementedError
 
+    @abstractmethod
     def unbalanced(self) -> Number:
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
-        raise NotImplementedError
 
 
 class Load(NamedTuple):
@@ -446,14 +235,15 @@ class ThrowStrength(Strength):
         self.name = f"throw {number + 1}"
         self.rods = [cylinders[index] for index in self.throw.cylinders]
         # torque is carried from the free end, of overhung cranks from none
-        before = () if self.shaft.overhung else line.throws[:number]
-        self.before = [cylinders[index] for throw in before for index in throw.cylinders]
+        self.before = list[CylinderForces]()
+        if not self.shaft.overhung:
+            for throw in line.throws[:number]:
+                self.before += [cylinders[index] for index in throw.cylinders]
         self.opposite = None
+        self._beyond = list[CylinderForces]()
         if self.shaft.overhung and self.throw.flywheel and len(line.throws) > 1:
             self.opposite = line.throws[1 - number]
-        self._beyond = (
-            [cylinders[index] for index in self.opposite.cylinders] if self.opposite else []
-        )
+            self._beyond = [cylinders[index] for index in self.opposite.cylinders]
         self._is_alone = len(cylinders) == 1
 
     def _position(self, forces: CylinderForces) -> Number:
@@ -464,10 +254,9 @@ class ThrowStrength(Strength):
 
     def _machine_at(self, pieces: Pieces | None) -> Machine:
         """Return the machine, or of many the one of each piece."""
-        several = pieces is not None and self.count is not None
-        return (
-            taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
-        )
+        if pieces is None or self.count is None:
+            return self.machine
+        return taken(self.machine, pieces.machine)
 
     def _bodies(
         self, load: Load, angle: CrankAngle, pieces: Pieces | None = None, number: int = 0
@@ -499,6 +288,7 @@ class ThrowStrength(Strength):
         return CrankAngle.of(degrees - (later if pieces is None else pieces.of(later)))
 
     def _places(self, body: FreeBody, opposite: Opposite | None) -> list[Place]:
+        """Return the places that are examined, with their stresses."""
         return list(places(body, self.throw.flywheel, opposite))
 
     def _columns(self, phi: Array, within: Array) -> StressColumns:
@@ -523,11 +313,10 @@ class ThrowStrength(Strength):
         ), states
 
     def _state(self, forces: CylinderForces, degrees: Array, within: Array) -> State:
-        return (
-            State.at(forces.drive, degrees, within)
-            if self._is_alone
-            else state_at(forces, degrees, within)
-        )
+        """Return the state of a cylinder at angles of crank 1."""
+        if self._is_alone:
+            return State.at(forces.drive, degrees, within)
+        return state_at(forces, degrees, within)
 
     # the cycle
 
@@ -551,30 +340,33 @@ class ThrowStrength(Strength):
     def _samples(self) -> Array:
         """What acts on the throw at the nodes of the common pieces, real (parts, nodes, pieces); see `_load`."""
         pieces = self._common
-        rods = [self._pin_samples(forces) for forces in self.rods]
-        parts = [part for rod in rods for part in (rod.real, rod.imag)]
-        parts += [
-            pieces.filled(pieces.of(forces.drive.rod_centrifugal_force)) for forces in self.rods
-        ]
-        beyond = [self._pin_samples(forces) for forces in self._beyond]
-        parts += [part for rod in beyond for part in (rod.real, rod.imag)]
+        parts = list[Array]()
+        for forces in self.rods:
+            load = self._pin_samples(forces)
+            parts += [load.real, load.imag]
+        for forces in self.rods:
+            parts.append(pieces.filled(pieces.of(forces.drive.rod_centrifugal_force)))
+        for forces in self._beyond:
+            load = self._pin_samples(forces)
+            parts += [load.real, load.imag]
         if self.before:
             torque = pieces.filled(0.0)
             for forces in self.before:
-                torque = torque + self._pin_samples(forces).imag * pieces.of(
-                    forces.drive.mechanism.crank
-                )
+                crank = pieces.of(forces.drive.mechanism.crank)
+                torque = torque + self._pin_samples(forces).imag * crank
             parts.append(torque)
         return np.stack(parts)
 
     def _load(self, parts: Array) -> Load:
         """Return the load that these parts are, (parts, nodes, pieces)."""
         rods, beyond = len(self.rods), len(self._beyond)
-        forces = parts[: 2 * rods : 2] + 1j * parts[1 : 2 * rods : 2]
-        others = parts[3 * rods : 3 * rods + 2 * beyond]
-        torque_A = parts[-1] if self.before else None
+        of_rods, pulls = parts[: 2 * rods], parts[2 * rods : 3 * rods]
+        of_others = parts[3 * rods : 3 * rods + 2 * beyond]
         return Load(
-            [*forces], torque_A, [*parts[2 * rods : 3 * rods]], [*(others[::2] + 1j * others[1::2])]
+            list(of_rods[::2] + 1j * of_rods[1::2]),
+            parts[-1] if self.before else None,
+            list(pulls),
+            list(of_others[::2] + 1j * of_others[1::2]),
         )
 
     def _bodies_on(self, pieces: Pieces, parts: Array) -> tuple[FreeBody, Opposite | None]:
@@ -591,43 +383,41 @@ class ThrowStrength(Strength):
         pieces, parts = self._common, self._samples
         body, opposite = self._bodies_on(pieces, parts)
         examined = self._places(body, opposite)
-        if self.count is None and not all(
-            np.isfinite(place.combined + place.von_mises).all() for place in examined
-        ):
+        are_finite = [np.isfinite(place.combined + place.von_mises).all() for place in examined]
+        if self.count is None and not all(are_finite):
             raise UsageError(
                 f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
                 "check the numbers and units of the machine file"
             )
         kinks = np.stack([pieces.filled(kink) for kink in self._kinks(body, self._load(parts))])
 
-        def magnitudes(some: Pieces, found: Array) -> Array:
-            body, _ = self._bodies_on(some, found)
-            load = self._load(found)
-            of_rods = [force + pull for force, pull in zip(load.rods, load.pulls)]
-            return np.abs(np.stack((body.A, body.B, *load.rods, *of_rods)))
+        def magnitudes(cut: Pieces, acting: Array) -> Array:
+            body, _ = self._bodies_on(cut, acting)
+            load = self._load(acting)
+            without_pull = [force + pull for force, pull in zip(load.rods, load.pulls)]
+            return np.abs(np.stack((body.A, body.B, *load.rods, *without_pull)))
 
-        fine, loads, found = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
-        return fine, found, np.asarray(loads)
+        fine, loads, acting = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
+        return fine, acting, np.asarray(loads)
 
     def _kinks(self, body: FreeBody, load: Load) -> list[Number]:
         """Return the quantities at whose zeros a magnitude or a stress bends."""
-        bends = body.moments_at(body.shaft.web_distance)
-        vectors = (
-            [*load.rods, body.pin, body.A, bends]
-            if len(load.rods) > 1
-            else [body.pin, body.A, bends]
-        )
-        kinks = [part for vector in vectors for part in (vector.real, vector.imag)]
+        vectors = [body.pin, body.A, body.moments_at(body.shaft.web_distance)]
+        if len(load.rods) > 1:
+            vectors = [*load.rods, *vectors]
+        kinks = list[Number]()
+        for vector in vectors:
+            kinks += [vector.real, vector.imag]
         # a web is bent out of plane as much at the pin as at the shaft
         kinks += [body.along_web, body.torque_pin - body.torque_B, body.torque_pin + body.torque_B]
         if body.torque_A is not None:
-            kinks += [
-                body.torque_A,
-                body.torque_A - body.torque_pin,
-                body.torque_A + body.torque_pin,
-                body.torque_B,
-            ]
-        return [*kinks, *(force.real + pull for force, pull in zip(load.rods, load.pulls))]
+            kinks.append(body.torque_A)
+            kinks.append(body.torque_A - body.torque_pin)
+            kinks.append(body.torque_A + body.torque_pin)
+            kinks.append(body.torque_B)
+        for force, pull in zip(load.rods, load.pulls):
+            kinks.append(force.real + pull)
+        return kinks
 
     @property
     def breaks(self) -> Array:
@@ -638,16 +428,16 @@ class ThrowStrength(Strength):
     def _largest(self) -> list[Extreme]:
         """The largest of Bach's stresses over the cycle, then of von Mises', of every place."""
 
-        def stresses(some: Pieces, parts: Array) -> list[Array]:
-            examined = self._places(*self._bodies_on(some, parts))
-            return [
-                *(place.combined for place in examined),
-                *(place.von_mises for place in examined),
-            ]
+        def stresses(cut: Pieces, parts: Array) -> list[Array]:
+            examined = self._places(*self._bodies_on(cut, parts))
+            by_bach = [place.combined for place in examined]
+            return by_bach + [place.von_mises for place in examined]
 
-        return [
-            Extreme(*map(self._result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))
-        ]
+        pieces, parts, _ = self._cycle
+        largest_stresses = list[Extreme]()
+        for stress, degrees in zip(*highest(pieces, parts, stresses)):
+            largest_stresses.append(Extreme(self._result(stress), self._result(degrees)))
+        return largest_stresses
 
     def _result(self, values: Array) -> Any:
         return result(values, self.count)
@@ -655,27 +445,37 @@ class ThrowStrength(Strength):
     @cached_property
     def answers(self) -> ValuesById:
         """The key values by id; stresses of the parts that are examined, the safety where k_b is given."""
-        allowable = self.shaft.allowable_bending
         values = self._of_loads()
         pull = sum(forces.drive.rod_centrifugal_force for forces in self.rods)
         values["C_rod"] = pull if some(pull != 0) else None
         values["P_dc"] = self.full_force
         length = self.shaft.pin_length / len(self.rods)
-        values["p_pin_dc"] = (
-            abs(self.full_force.value) / self.shaft.pin_diameter / length
-        )  # G: P_max/(d_z l_z)
-        at = self.at_dead_centre
-        rows = [*zip(at, self._largest[: len(at)], self._largest[len(at) :])]
-        for part in dict.fromkeys(place.part for place in at):
-            of_part = [row for row in rows if row[0].part == part]
-            resting = largest(*(Extreme(place.combined, place.degrees) for place, _, _ in of_part))
-            turning = largest(*(bach for _, bach, _ in of_part))
-            values[f"sigma_{part}_dc"], values[f"sigma_{part}_max"] = resting.value, turning
-            values[f"mises_{part}_max"] = largest(*(mises for _, _, mises in of_part))
-            worst = largest(resting, turning)
-            if allowable is not None and not every(worst.value == 0):
-                safety = allowable / where(worst.value == 0, math.nan, worst.value)
-                values[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
+        pressure = abs(self.full_force.value) / self.shaft.pin_diameter / length
+        values["p_pin_dc"] = pressure  # G: P_max/(d_z l_z)
+        for part in dict.fromkeys(place.part for place in self.at_dead_centre):
+            values |= self._of_part(part)
+        return values
+
+    def _of_part(self, part: str) -> ValuesById:
+        """The key values of one part of the throw: its stresses at rest and running, and its safety."""
+        count = len(self.at_dead_centre)
+        resting, by_bach, by_mises = list[Extreme](), list[Extreme](), list[Extreme]()
+        for number, place in enumerate(self.at_dead_centre):
+            if place.part == part:
+                resting.append(Extreme(place.combined, place.degrees))
+                by_bach.append(self._largest[number])
+                by_mises.append(self._largest[count + number])
+        at_rest, running = largest(*resting), largest(*by_bach)
+        values: ValuesById = {
+            f"sigma_{part}_dc": at_rest.value,
+            f"sigma_{part}_max": running,
+            f"mises_{part}_max": largest(*by_mises),
+        }
+        worst = largest(at_rest, running)
+        allowable = self.shaft.allowable_bending
+        if allowable is not None and not every(worst.value == 0):
+            safety = allowable / where(worst.value == 0, math.nan, worst.value)
+            values[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
         return values
 
     def _of_loads(self) -> ValuesById:
@@ -684,35 +484,40 @@ class ThrowStrength(Strength):
         The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n. Each rod has
         an equal part of the pin. Bearings between two throws carry both: their pressure is that of `kurbel bearings`.
         """
-        (pieces, _, loads), shaft, speed = self._cycle, self.shaft, self.machine.speed
+        pieces, _, loads = self._cycle
+        shaft = self.shaft
         rods = len(self.rods)
         extremes = pieces.extremes(loads[: 2 + rods])
-        most = [
-            Extreme(*map(self._result, pair)) for pair in zip(extremes.largest, extremes.largest_at)
-        ]
+        most = list[Extreme]()
+        for load, degrees in zip(extremes.largest, extremes.largest_at):
+            most.append(Extreme(self._result(load), self._result(degrees)))
         means = [self._result(mean) for mean in pieces.mean(loads)]
         mean_on_pin = functools.reduce(np.maximum, means[2 + rods :]) if rods > 1 else means[-1]
         values: ValuesById = {"A_max": most[0], "B_max": most[1]}
 
         pin_length = shaft.pin_length / rods
-        parts: dict[str, tuple[Extreme, Any, Number | None, Number | None]] = {
-            "pin": (largest(*most[2:]), mean_on_pin, shaft.pin_diameter, pin_length)
-        }
+        values |= self._pressures(
+            "pin", largest(*most[2:]), mean_on_pin, shaft.pin_diameter, pin_length
+        )
         if len(self.line.throws) == 1:
-            journal = shaft.journal_diameter, shaft.journal_length
-            parts |= {
-                "journal_A": (most[0], means[0], *journal),
-                "journal_B": (most[1], means[1], *journal),
-            }
-        for part, (load, mean, diameter, length) in parts.items():
+            diameter, length = shaft.journal_diameter, shaft.journal_length
             if diameter is not None and length is not None:
-                pressure_max: Any = load.value / diameter / length
-                values[f"p_{part}_max"] = Extreme(pressure_max, load.degrees)
-                values[f"p_{part}_mean"] = pressure = mean / diameter / length
-                values[f"k_{part}"] = (
-                    None if speed is None else pressure * math.pi * diameter * speed
-                )
+                values |= self._pressures("journal_A", most[0], means[0], diameter, length)
+                values |= self._pressures("journal_B", most[1], means[1], diameter, length)
         return values
+
+    def _pressures(
+        self, part: str, load: Extreme, mean: Any, diameter: Number, length: Number
+    ) -> ValuesById:
+        """The largest and the mean pressure on a pin or journal, and p_m v where a speed is given."""
+        speed = self.machine.speed
+        largest_pressure: Any = load.value / diameter / length
+        pressure = mean / diameter / length
+        return {
+            f"p_{part}_max": Extreme(largest_pressure, load.degrees),
+            f"p_{part}_mean": pressure,
+            f"k_{part}": None if speed is None else pressure * math.pi * diameter * speed,
+        }
 
     def unbalanced(self) -> Number:
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
@@ -723,10 +528,9 @@ class ThrowStrength(Strength):
             if forces.drive.has_force:
                 state = forces.samples
                 of_work = state.tangential_at_pin * state.mechanism.crank + 0j
-                torque = (
-                    torque
-                    + (of_work if self._is_alone else resampled(pieces, forces, of_work)[0]).real
-                )
+                if not self._is_alone:
+                    of_work = resampled(pieces, forces, of_work)[0]
+                torque = torque + of_work.real
         return self._result(pieces.largest(body.equilibrium_residual(torque)))
 
     @cached_property
@@ -794,7 +598,7 @@ class ThrowStrength(Strength):
             bodies = self._bodies(Load(loads, None, opposite=beyond), angle, number=number)
             of_crank_1 = self._of_crank_1(forces, degrees)
             examined = [place._replace(degrees=of_crank_1) for place in self._places(*bodies)]
-            worst = [_worse(*pair) for pair in zip(worst, examined)] if worst else examined
+            worst = list(map(_worse, worst, examined)) if worst else examined
         return tuple(worst)
 
     @property
@@ -810,10 +614,11 @@ class ThrowStrength(Strength):
         """Every place at the crank angle of the running machine at which its own combined stress is largest."""
         angles = [worst.degrees for worst in self._largest[: len(self.at_dead_centre)]]
         worst = list[Place]()
-        for number, (place, degrees) in enumerate(
-            zip(self._places(*self._next_to(angles)), angles)
-        ):
-            side = 2 * number + int(place.combined[2 * number : 2 * number + 2].argmax())
+        examined = self._places(*self._next_to(angles))
+        for number, (place, degrees) in enumerate(zip(examined, angles)):
+            # the side of the angle, before or after it, with the larger stress
+            first = 2 * number
+            side = first + int(place.combined[first : first + 2].argmax())
             worst.append(place.of_state(side, degrees))
         return tuple(worst)
 
