@@ -24,7 +24,7 @@ ABSOLUTE = MACHINE.format(counted="absolute", low="1 bar", high="7 bar")
 GAUGE = MACHINE.format(counted="gauge", low="-0.01325 bar", high="5.98675 bar")
 
 
-def test_programs_are_told_too() -> None:
+def test_programs_are_informed_too() -> None:
     (head, *_) = csv.reader(
         printed(
             "forces", "-", "--columns", "p_head", "--angles", "90", "-f", "csv", text=ABSOLUTE
@@ -51,7 +51,7 @@ def test_forces_and_differences_hang_on_no_zero() -> None:
 
 
 def test_places_count_as_the_file_does() -> None:
-    found = printed(
+    result = printed(
         "forces",
         "-",
         "--where",
@@ -62,7 +62,7 @@ def test_places_count_as_the_file_does() -> None:
         "csv",
         text=ABSOLUTE,
     )
-    assert float(found.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
+    assert float(result.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
 
 
 # units that say which zero they have, of ISO 80000-4 and of DIN 1314 before 1977

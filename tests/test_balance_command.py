@@ -19,16 +19,16 @@ def ids(entries: list[dict[str, Any]]) -> list[str]:
 
 
 def test_columns_and_tables_have_the_names_that_are_relied_on() -> None:
-    found = parsed("four-in-line")
-    assert ids(found["machine_columns"]) == ["phi", "F_x", "F_y", "M_x", "M_y", "M_roll"]
-    orders = next(one for one in found["machine_place_tables"] if one["id"] == "orders")
+    result = parsed("four-in-line")
+    assert ids(result["machine_columns"]) == ["phi", "F_x", "F_y", "M_x", "M_y", "M_roll"]
+    orders = next(one for one in result["machine_place_tables"] if one["id"] == "orders")
     assert ids(orders["columns"])[:3] == ["order", "F_forward", "F_backward"]
     assert {"M_forward", "M_backward"} < set(ids(orders["columns"]))
     assert orders["columns"][0]["values"][:3] == [1, 2, 4]
     assert orders["columns"][1]["values"][0] == 0
     named = {"F_free_max", "M_free_max", "counterweight_best", "F_free_best"}
-    assert named < set(ids(found["machine_key_values"]))
-    assert next(one["values"][-1] for one in found["machine_columns"] if one["id"] == "phi") == 360
+    assert named < set(ids(result["machine_key_values"]))
+    assert next(one["values"][-1] for one in result["machine_columns"] if one["id"] == "phi") == 360
 
 
 def test_names_of_weights_are_words_for_programs_and_texts_for_people() -> None:

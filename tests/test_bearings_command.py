@@ -36,7 +36,7 @@ def test_json_has_one_part_for_each_pin_and_bearing() -> None:
         *film,
     ]
     values = {value["id"]: value for value in parts["bearing A"]["key_values"]}
-    asked = {
+    words = {
         "load_max",
         "load_mean",
         "load_min",
@@ -44,5 +44,5 @@ def test_json_has_one_part_for_each_pin_and_bearing() -> None:
         "pressure_max",
         "pressure_velocity",
     }
-    assert asked <= values.keys()
+    assert words <= values.keys()
     assert values["load_max"]["value"] >= max(parts["bearing A"]["columns"][1]["values"])

@@ -22,7 +22,7 @@ def called(text: str, *arguments: str) -> tuple[int, str, str]:
     return result.exit_code, result.stdout, result.stderr
 
 
-def test_a_limit_passed_in_magnitude_by_the_other_sign_is_told() -> None:
+def test_a_limit_passed_in_magnitude_by_the_other_sign_is_reported() -> None:
     text = ENGINE + f"masses: {{piston: 500 kg}}\nindicator: {{head_end: {{{PRESSURE}}}}}\n"
     low, high = sorted(
         solve(loads(text)).cylinders[0].extremes_of("T") or (), key=lambda one: one.value
@@ -33,9 +33,9 @@ def test_a_limit_passed_in_magnitude_by_the_other_sign_is_told() -> None:
     status, listed, _ = called(text + f"limits: {{T_min: -{halfway} N}}\n", "check")
     assert status == 0
     assert f"T_max = {high.value:.9g} N is beyond it with the other sign; " in listed
-    for told in ("", f", T_max: {2 * high.value} N"):  # who bounds the other end too knows
+    for reported in ("", f", T_max: {2 * high.value} N"):  # who bounds the other end too knows
         status, listed, _ = called(
-            text + f"limits: {{T_min: -{2 * high.value} N{told}}}\n", "check"
+            text + f"limits: {{T_min: -{2 * high.value} N{reported}}}\n", "check"
         )
         assert (status, "other sign" in listed) == (0, False)
 
@@ -191,8 +191,8 @@ def test_many_files_are_checked_in_one_run(
     assert ("wrong.yaml:5:1: bor: unknown key" in result.stderr) == ("wrong" in names)
     as_json = run("check", *files, "-f", "json")
     assert as_json.exit_code == status
-    found = json.loads(as_json.stdout)["findings"]
-    assert {one["file"] for one in found} == set(files)
+    results = json.loads(as_json.stdout)["findings"]
+    assert {one["file"] for one in results} == set(files)
 
 
 # notes
@@ -242,16 +242,16 @@ def of_two(figures: str, *arguments: str) -> tuple[int, str]:
 def test_a_limit_is_held_against_those_it_names(name: str, largest: float) -> None:
     """Of each cylinder, and not of the machine, where nobody is named."""
     assert of_two(f"limits: {{{name}: {newton(1.001 * largest)}}}", "check")[0] == 0
-    status, told = of_two(f"limits: {{{name}: {newton(0.999 * largest)}}}", "check")
+    status, reported = of_two(f"limits: {{{name}: {newton(0.999 * largest)}}}", "check")
     assert status == 1
-    assert told.count("FAIL") == 1
+    assert reported.count("FAIL") == 1
 
 
 def test_expectations_have_scopes_too() -> None:
     figures = {"machine.T_max": HP + LP, "HP.T_max": HP, "LP.T_max": LP}
     lines = [f"  {name}: {newton(size)} ± 0.1 %" for name, size in figures.items()]
-    status, told = of_two("\n".join(["expect:", *lines]), "check")
-    assert (status, told.count(" PASS ")) == (0, 3)
+    status, reported = of_two("\n".join(["expect:", *lines]), "check")
+    assert (status, reported.count(" PASS ")) == (0, 3)
     assert (
         of_two(f"expect: {{T_max: {newton(LP)} ± 0.1 %}}", "check")[0] == 1
     )  # the HP cylinder has less
@@ -261,7 +261,7 @@ def test_a_sweep_keeps_limits_of_those_they_name() -> None:
     bounds = (
         f"limits: {{LP.T_max: {newton(1.001 * LP)}, machine.T_max: {newton(1.001 * (HP + LP))}}}"
     )
-    asked = (
+    words = (
         "sweep",
         "--vary",
         "cylinders.1.bore=400,500,600 mm",
@@ -270,16 +270,16 @@ def test_a_sweep_keeps_limits_of_those_they_name() -> None:
         "--columns",
         "LP.T_max",
     )
-    status, told = of_two(bounds, *asked, "-f", "json")
-    found = [json.loads(line) for line in told.splitlines()]
-    assert (status, [one["broken"] for one in found]) == (
+    status, reported = of_two(bounds, *words, "-f", "json")
+    results = [json.loads(line) for line in reported.splitlines()]
+    assert (status, [one["broken"] for one in results]) == (
         0,
         [None, None, None, None, "LP.T_max", "LP.T_max"],
     )
-    told = of_two(
-        bounds, *asked, "-f", "json", "--set", "limits={}", "--set", "limits.machine.T_max=56 kN"
+    reported = of_two(
+        bounds, *words, "-f", "json", "--set", "limits={}", "--set", "limits.machine.T_max=56 kN"
     )[1]
-    assert [json.loads(line)["broken"] for line in told.splitlines()] == [None] * 2 + [
+    assert [json.loads(line)["broken"] for line in reported.splitlines()] == [None] * 2 + [
         "machine.T_max"
     ] * 4
 

@@ -201,7 +201,7 @@ def test_T_is_the_torque_over_the_crank_with_friction_in_pins_and_journals() -> 
 # extremes at a jump
 
 
-def test_an_extreme_before_a_jump_says_so() -> None:
+def test_an_extreme_before_a_jump_is_marked() -> None:
     (cylinder,) = answer("forces", WATERWORKS)["cylinders"]
     sides = {one["id"]: one.get("side", "") for one in cylinder["key_values"]}
     assert {id for id, side in sides.items() if side} == {

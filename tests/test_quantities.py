@@ -109,7 +109,7 @@ def test_the_largest_and_the_smallest_share_a_unit(
         report_of(case_of(name), Frame(command, (0.0,), (), system)).all_parts[part]
         for system in ("metric", "si")
     ]
-    told, in_si = ({key_value.id: key_value for key_value in one.key_values} for one in shown)
-    assert {id: told[id].unit for id in units} == units
+    reported, in_si = ({key_value.id: key_value for key_value in one.key_values} for one in shown)
+    assert {id: reported[id].unit for id in units} == units
     for id in units:
-        assert told[id].value * 1000 == pytest.approx(in_si[id].value, rel=1e-15)
+        assert reported[id].value * 1000 == pytest.approx(in_si[id].value, rel=1e-15)

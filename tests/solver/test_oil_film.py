@@ -132,8 +132,8 @@ def test_mobility(
     seen = seen_from_load(epsilon, angle)
     of = shape(slenderness, theory)
     p, q = np.array(seen.real), np.array(seen.imag)
-    found = oil_film.mobility(p, q, of.lam, of.finite)
-    assert found == pytest.approx((along, across), rel=1e-13)
+    result = oil_film.mobility(p, q, of.lam, of.finite)
+    assert result == pytest.approx((along, across), rel=1e-13)
 
 
 @pytest.mark.parametrize(("epsilon", "angle", "peak"), PEAKS)
@@ -455,8 +455,8 @@ assert LAM
 
 def without_groove(films: OilFilms, key: str, diameter: float, length: float) -> FilmShape:
     bearing = films.bearings[key]
-    found = FilmShape.of_bearing(films, key, diameter, length)
-    return found._replace(length=found.length + bearing.groove, lands=1)
+    result = FilmShape.of_bearing(films, key, diameter, length)
+    return result._replace(length=result.length + bearing.groove, lands=1)
 
 
 def flow_of_both_sides(film: OilFilm, pieces: Pieces) -> tuple[np.ndarray, np.ndarray]:
@@ -492,8 +492,8 @@ def test_figures_catch(error: str, monkeypatch: pytest.MonkeyPatch) -> None:
     parts = {part.name: part for part in Case(loads(text_of(name))).bearings.parts}
     assert misses(name, parts)
     if thickness is not None:
-        found = 1e6 * parts["crank pin"].film_thickness_min.value
-        assert found == pytest.approx(thickness, rel=2e-3)
+        result = 1e6 * parts["crank pin"].film_thickness_min.value
+        assert result == pytest.approx(thickness, rel=2e-3)
 
 
 def test_figures_catch_constants_that_are_swapped(monkeypatch: pytest.MonkeyPatch) -> None:
