@@ -36,7 +36,7 @@ def test_programs_are_informed_too() -> None:
     ][0]
     assert parsed["columns"][1]["unit"] == "Pa abs"
     assert parsed["columns"][1]["values"] == pytest.approx([1e5], rel=1e-15)
-    (p_max,) = (one for one in parsed["key_values"] if one["id"] == "p_max")
+    (p_max,) = (key_value for key_value in parsed["key_values"] if key_value["id"] == "p_max")
     assert (p_max["unit"], p_max["value"]) == ("Pa abs", pytest.approx(7e5, rel=1e-15))
     assert Case(loads(ABSOLUTE)).cylinders[0]["p_max"].unit == "Pa abs"
 

@@ -49,7 +49,7 @@ def found_as_json(text: str, *arguments: str) -> tuple[int, dict[str, Any]]:
     status, listed, said = called(text, "check", "-f", "json", *arguments)
     assert said == ""
     parsed: dict[str, Any] = json.loads(listed)
-    assert all(list(one) == FINDING for one in parsed["findings"])
+    assert all(list(finding) == FINDING for finding in parsed["findings"])
     return status, parsed
 
 
@@ -60,9 +60,9 @@ def test_findings_of_a_check_have_their_place() -> None:
     )
     status, parsed = found_as_json(text)
     places = {
-        one["key"]: (one["line"], one["column"], one["severity"])
-        for one in parsed["findings"]
-        if one["key"]
+        finding["key"]: (finding["line"], finding["column"], finding["severity"])
+        for finding in parsed["findings"]
+        if finding["key"]
     }
     assert status == 2  # δ cannot be judged
     assert parsed["machine"] == "machine"
@@ -73,9 +73,9 @@ def test_findings_of_a_check_have_their_place() -> None:
         "limits.delta": (7, 3, "error"),
     }
     (left_out,) = (
-        one
-        for one in parsed["findings"]
-        if "no bore" in one["message"] or "no indicator" in one["message"]
+        finding
+        for finding in parsed["findings"]
+        if "no bore" in finding["message"] or "no indicator" in finding["message"]
     )
     assert (left_out["key"], left_out["severity"]) == (None, "info")
     assert found_as_json(ENGINE + "limits: {c_max: 1 m/s}\n")[0] == 1
@@ -89,7 +89,11 @@ def test_a_warning_has_the_place_of_its_cylinder() -> None:
         + one % ("left", GAUGE.strip())
         + one % ("right", GAUGE.strip())
     )
-    warnings = [one for one in found_as_json(text)[1]["findings"] if "absolute?" in one["message"]]
+    warnings = [
+        finding
+        for finding in found_as_json(text)[1]["findings"]
+        if "absolute?" in finding["message"]
+    ]
     assert [(warning["key"], warning["line"], warning["severity"]) for warning in warnings] == [
         ("cylinders[0]", 3, "warning"),
         ("cylinders[1]", 4, "warning"),
@@ -272,7 +276,7 @@ def test_a_sweep_keeps_limits_of_those_they_name() -> None:
     )
     status, reported = of_two(bounds, *words, "-f", "json")
     results = [json.loads(line) for line in reported.splitlines()]
-    assert (status, [one["broken"] for one in results]) == (
+    assert (status, [result["broken"] for result in results]) == (
         0,
         [None, None, None, None, "LP.T_max", "LP.T_max"],
     )
@@ -288,7 +292,8 @@ def test_shipped_machines_keep_their_limits_and_the_figures_that_their_sources_p
     result = run("check", "-f", "json", *map(str, CONFIGS.values()))
     assert result.exit_code == 0, result.output
     messages = [
-        (Path(one["file"]).stem, one["message"]) for one in json.loads(result.stdout)["findings"]
+        (Path(finding["file"]).stem, finding["message"])
+        for finding in json.loads(result.stdout)["findings"]
     ]
     compared = {name for name, message in messages if ", expected " in message}
     assert compared == {"waterworks", "waterworks-two-cranks", "locomotive", "gas-engine"}

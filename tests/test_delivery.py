@@ -398,7 +398,9 @@ def test_a_row_for_each_load_case(command: str) -> None:
         for part in alone["cylinders"]:
             table = tables[part["name"]]
             assert table["rows"][place] == {"case": case}
-            value = next(one["value"] for one in part["key_values"] if one["id"] == ids)
+            value = next(
+                key_value["value"] for key_value in part["key_values"] if key_value["id"] == ids
+            )
             assert table["columns"][0]["values"][place] == value
 
 

@@ -20,7 +20,9 @@ def results(text: str, *arguments: str) -> dict[str, Any]:
 
 
 def values(text: str) -> dict[str, object]:
-    return {one["id"]: one["value"] for one in results(text)["machine_key_values"]}
+    return {
+        key_value["id"]: key_value["value"] for key_value in results(text)["machine_key_values"]
+    }
 
 
 def test_the_whole_machine_is_under_its_own_keys() -> None:
@@ -32,7 +34,7 @@ def test_the_whole_machine_is_under_its_own_keys() -> None:
     assert columns["E"][0] == 0
     assert columns["E"][-1] == pytest.approx(0, abs=1e-9)
     assert columns["M"] == pytest.approx([0.4 * force for force in columns["T"]])
-    ids = [one["id"] for one in result["machine_key_values"]]
+    ids = [key_value["id"] for key_value in result["machine_key_values"]]
     assert {"W", "M_mean", "dE", "delta", "J", "GD2", "omega_max", "omega_min"} <= set(ids)
     assert result["cylinders"][0]["key_values"][0]["id"] == "P_dead_centre"
 

@@ -41,7 +41,9 @@ def test_the_columns_that_scripts_rely_on() -> None:
     assert critical["order"] == list(range(1, 13)) * 3
     for order, mode, speed in zip(critical["order"], critical["mode"], critical["speed"]):
         assert speed == pytest.approx(modes["frequency"][int(mode)] / order, rel=1e-15)
-    assert all(isinstance(one["unit"], str) for one in result["machine_place_tables"][0]["columns"])
+    assert all(
+        isinstance(column["unit"], str) for column in result["machine_place_tables"][0]["columns"]
+    )
 
 
 def test_half_orders_of_four_strokes() -> None:

@@ -71,7 +71,7 @@ def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
 def of_table(parsed: dict[str, Any], asked: dict[str, str | None]) -> list[float]:
     """Return the values of a column in the rows of a table of the whole machine where others have these values."""
     table = next(one for one in parsed["machine_place_tables"] if one["id"] == asked["table"])
-    columns = {one["id"]: one["values"] for one in table["columns"]}
+    columns = {column["id"]: column["values"] for column in table["columns"]}
     rows = list(range(len(columns[str(asked["id"])])))
     for condition in str(asked["rows"]).split("; "):
         name, _, values = condition.partition("=")
@@ -98,9 +98,9 @@ def told(row: dict[str, Any]) -> Any:
             for one in part.get("place_tables", ())
             if one["id"] == request["table"]
         )
-        return next(one for one in table["columns"] if one["id"] == request["id"])["values"][
-            int(request["nth"] or 0)
-        ]
+        return next(column for column in table["columns"] if column["id"] == request["id"])[
+            "values"
+        ][int(request["nth"] or 0)]
     kind = "columns" if request["angle"] or request["where"] else "key_values"
     one = next(one for part in parts for one in part.get(kind, ()) if one["id"] == request["id"])
     if request["angle"]:

@@ -30,7 +30,7 @@ def test_the_flywheel_of_a_fluctuation_is_the_one_that_kurbel_gives() -> None:
     reported = json.loads(
         run("flywheel", str(CONFIGS["waterworks-two-cranks"]), "-f", "json").stdout
     )
-    by_id = {one["id"]: one["value"] for one in reported["machine_key_values"]}
+    by_id = {key_value["id"]: key_value["value"] for key_value in reported["machine_key_values"]}
     assert [one.values[0] for one in result] == pytest.approx([by_id["J_exact"]], rel=1e-9)
 
 
@@ -96,7 +96,9 @@ def test_two_planted_values_are_found_again() -> None:
     case = json.loads(
         run("forces", str(CONFIGS["waterworks"]), "-f", "json", "--set", "rod_ratio=5").stdout
     )
-    by_id = {one["id"]: one["value"] for one in case["cylinders"][0]["key_values"]}
+    by_id = {
+        key_value["id"]: key_value["value"] for key_value in case["cylinders"][0]["key_values"]
+    }
     equations = [f"{id} = {by_id[id]!r} N" for id in ("T_max", "N_max")]
     result = found_in("waterworks", "stroke=600:1000 mm; rod_ratio=4:8", *equations).found
     assert [one.values for one in result] == [pytest.approx((0.8, 5.0), rel=1e-9)]
@@ -131,7 +133,7 @@ def test_the_written_file_has_what_was_wanted(tmp_path: Path) -> None:
     new = tmp_path / "new.yaml"
     new.write_text(written.stdout, encoding="utf-8")
     reported = json.loads(run("flywheel", str(new), "-f", "json").stdout)
-    assert {one["id"]: one["value"] for one in reported["machine_key_values"]}[
+    assert {key_value["id"]: key_value["value"] for key_value in reported["machine_key_values"]}[
         "delta"
     ] == pytest.approx(1 / 80, rel=1e-10)
     comments = [

@@ -37,7 +37,7 @@ def words_in(svg: str) -> list[str]:
     results = (
         one for one in ElementTree.fromstring(svg).iter() if one.tag.endswith(("text", "title"))
     )
-    return ["".join(one.itertext()) for one in results]
+    return ["".join(result.itertext()) for result in results]
 
 
 @pytest.mark.slow

@@ -96,7 +96,11 @@ def test_sweeps_have_each_piston_and_levers_of_both_signs() -> None:
 def test_json_and_table_show_every_piston() -> None:
     steam, pump = answer("forces", "-", text=engine())["cylinders"][0]["pistons"]
     assert (steam["name"], pump["name"]) == ("piston", "pump")
-    assert {one["id"] for one in pump["key_values"]} == {"work", "power", "mean_pressure"}
+    assert {key_value["id"] for key_value in pump["key_values"]} == {
+        "work",
+        "power",
+        "mean_pressure",
+    }
     table = run("forces", "-", text=engine()).output
     assert "Each piston" in table
     listed = run("forces", "-", "--key-values", "-f", "csv", text=engine()).output

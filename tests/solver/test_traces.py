@@ -332,7 +332,9 @@ def test_one_cycle_and_each_cycle(tmp_path: Path) -> None:
     reported = json.loads(
         runner.invoke(kurbel, ["forces", str(file), "--cycle", "7", "-f", "json"]).stdout
     )
-    values = {one["id"]: one["value"] for one in reported["cylinders"][0]["key_values"]}
+    values = {
+        key_value["id"]: key_value["value"] for key_value in reported["cylinders"][0]["key_values"]
+    }
     assert values["mean_pressure"] == pytest.approx(indicated(angles, each[6]) * BAR, rel=1e-12)
     assert "cycles_measured" not in values
     table = runner.invoke(kurbel, ["forces", str(file), "--each-cycle", "-f", "csv"]).stdout
