@@ -224,8 +224,7 @@ def written_out(keys: Any) -> Any:
         name = cylinder.get("name", f"cylinder {number + 1}")
         model = by_name.get(cylinder.get("like"), {})
         own = {key: value for key, value in cylinder.items() if key != "like"}
-        placed = {"crank_position", "bank_angle", "axial_position", "name"}
-        merged = {key: value for key, value in model.items() if key not in placed} | own
+        merged = {key: value for key, value in model.items() if key != "name"} | own
         by_name[name] = merged
         written.append(merged | {"name": name})
     return keys | {"cylinders": written}

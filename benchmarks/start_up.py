@@ -1,18 +1,19 @@
 """Start-up of whole processes with their output in a pipe, as ratios to `python -c 'import numpy'` of the same run.
 
-    python benchmarks/start_up.py [ROUNDS]
+    python benchmarks/start_up.py [ROUNDS [COMMAND...]]
 
-The commands take turns, so that a machine that is slow for a while is slow for all of them. Both ratios are shown, of
-the medians and of the least times: on a machine that does other work besides only the least say what kurbel takes.
+Times are those that the processor spends on the process, of which other work on the machine takes no part. The
+commands take turns, so that a machine that is slow for a while is slow for all of them. Both ratios are shown, of the
+medians and of the least times. COMMAND: a word of those that are measured, such as `forces`; all if none is given.
 """
 
 from __future__ import annotations
 
 import os
+import resource
 import statistics
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 BIN = Path(sys.executable).parent
@@ -37,25 +38,36 @@ BUDGET = {
 }
 
 
-def measure(rounds: int) -> dict[str, list[float]]:
+def processor_time() -> float:
+    """Return the seconds that the processor has spent on processes that have ended."""
+    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return spent.ru_utime + spent.ru_stime
+
+
+def measure(rounds: int, words: list[str]) -> dict[str, list[float]]:
     """Return the seconds of each round by command."""
+    commands = {
+        name: command
+        for name, command in COMMANDS.items()
+        if name == BASE or not words or set(words) & set(name.split())
+    }
     # without compiled modules every start would compile kurbel anew, which no installation does
     environment = {
         key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"
     }
-    times: dict[str, list[float]] = {name: [] for name in COMMANDS}
+    times: dict[str, list[float]] = {name: [] for name in commands}
     for number in range(rounds + 1):
-        for name, command in COMMANDS.items():
-            begin = time.perf_counter()
+        for name, command in commands.items():
+            begin = processor_time()
             subprocess.run(command, stdout=subprocess.PIPE, check=True, env=environment)
             if number:  # the first round warms up
-                times[name].append(time.perf_counter() - begin)
+                times[name].append(processor_time() - begin)
     return times
 
 
 def main() -> None:
     """Print the table."""
-    times = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 15)
+    times = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 15, sys.argv[2:])
     base = times[BASE]
     print(f"{'':<24}{'median':>16}{'least':>16}")
     print(f"{'command':<24}{'ms':>8}{'ratio':>8}{'ms':>8}{'ratio':>8}{'budget':>8}")

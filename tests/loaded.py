@@ -40,10 +40,10 @@ def modules_of_each(runs: list[list[str]]) -> list[list[str]]:
 
 def in_fork(function: Callable[..., Any], argument: Any) -> Any:
     """Return what a function returns in a fork of this process, which stays as it is."""
-    gc.freeze()  # or the fork would copy all that it collects no garbage of
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
+        gc.disable()  # or it would copy the pages of all that it looks at
         with open(writing, "w", encoding="utf-8") as pipe:
             json.dump(function(argument), pipe)
         os._exit(0)

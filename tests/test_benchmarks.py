@@ -9,6 +9,7 @@ import pytest
 FOLDER = Path(__file__).parent.parent / "benchmarks"
 BRIEF = {
     "free_bodies.py": ["punch"],
+    "oil_film.py": ["1"],
     "pareto_front.py": ["2000"],
     "random_cylinders.py": ["5"],
     "random_files.py": ["5"],

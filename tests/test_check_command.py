@@ -297,3 +297,21 @@ def test_shipped_machines_keep_their_limits_and_the_figures_that_their_sources_p
     ]
     compared = {name for name, message in messages if ", expected " in message}
     assert compared == {"waterworks", "waterworks-two-cranks", "locomotive", "gas-engine"}
+
+
+def test_check_lists_the_events_of_a_slide_valve() -> None:
+    """Infinite rods: r sin(φ + δ) is the lap at an event, sin δ = (15 + 3)/30; x = (1 − cos φ)/2 of the stroke.
+
+    Cut-off at 180 − 30 − 36.87 = 113.13 degrees, release at 143.13, admission at −6.87, compression at −36.87.
+    """
+    text = (
+        "{speed: 60 rpm, crank: 300 mm, rod: infinite, bore: 300 mm, indicator: {head_end: {steam: {admission: 5 bar, "
+        "exhaust: 0.2 bar, clearance: 0.05}}, crank_end: mirrored}, valve: {travel: 60 mm, steam_lap: 15 mm, exhaust_lap: 0 mm, lead: 3 mm}}"
+    )
+    printed = run("check", "-", text=text)
+    assert printed.exit_code == 0, printed.output
+    assert (
+        "valve      head end: admission 0.4 % before the dead centre (353.1 deg), cut-off at 69.6 % (113.1 deg), "
+        "release at 90 % (143.1 deg), compression 10 % before the dead centre (323.1 deg)\n"
+    ) in printed.stdout
+    assert "valve" not in run("check", str(CONFIGS["locomotive"])).stdout

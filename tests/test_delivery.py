@@ -412,3 +412,106 @@ def test_temperatures(written: str) -> None:
     gas = api.loads(ENDS.replace("35 °C", written)).gas
     assert gas
     assert gas.inlet_temperature == pytest.approx(308.15, abs=1e-9)
+
+
+# chambers that are always open to a pipe
+
+ROD = 100 / math.sqrt(2)
+"""Diameter in mm of the trunk of a plunger of 100 mm whose annulus is half of it."""
+DIFFERENTIAL = f"""speed: 60 rpm
+stroke: 200 mm
+rod: 1000 mm
+bore: 100 mm
+crank_end_rod: {ROD!r} mm
+indicator:
+  head_end: {{constant: {{expansion: -0.3 bar, compression: 5 bar}}}}
+  crank_end: 5 bar
+pump: {{suction_pipe: {{length: 5 m, diameter: 80 mm}}, delivery_pipe: {{length: 20 m, diameter: 60 mm, friction_factor: 0.02}}}}
+"""
+CRANK = 0.1
+FACTOR = 5.0
+
+
+def largest_slope() -> float:
+    """The largest (dx/dφ)/R of L/R = 5, by a dense search."""
+    phi = np.linspace(0.0, np.pi, 2_000_001)
+    lam = 1 / FACTOR
+    slope = np.sin(phi) * (1 + lam * np.cos(phi) / np.sqrt(1 - (lam * np.sin(phi)) ** 2))
+    return float(slope.max())
+
+
+def test_a_differential_pump_delivers_on_both_strokes() -> None:
+    """The plunger gives A and the annulus takes A/2 on the return; on the outstroke the annulus gives A/2 (FA35)."""
+    pump = pump_of(DIFFERENTIAL.replace("rod: 1000", "rod: 500"))
+    half = AREA / 2 * CRANK * 2 * math.pi
+    assert pump["flow_mean"].value == pytest.approx(AREA * STROKE, rel=1e-12)
+    assert pump["flow_max"].value == pytest.approx(half * largest_slope(), rel=1e-9)
+    assert pump["flow_min"].value == 0
+    # own calculation with L/R = 10: numpy, no code of kurbel
+    ten = pump_of(DIFFERENTIAL)
+    assert ten["flow_max"].value == pytest.approx(0.0024797086203723687, rel=1e-12)
+    assert ten["volume_fluctuation"].value == pytest.approx(0.00018254962921158318, abs=1e-13)
+
+
+def test_it_is_a_double_acting_pump_of_half_the_area() -> None:
+    """On the side of delivery; on that of suction it stays single-acting."""
+    pump = pump_of(DIFFERENTIAL).at([30.0, 200.0, 300.0])
+    double = pump_of(
+        DIFFERENTIAL.replace("crank_end: 5 bar", "crank_end: mirrored")
+        .replace(f"crank_end_rod: {ROD!r} mm\n", "")
+        .replace("bore: 100 mm", f"bore: {ROD!r} mm")
+    ).at([30.0, 200.0, 300.0])
+    assert pump.flow == pytest.approx(double.flow, rel=1e-12)
+    assert pump.flow_suction[1:] == pytest.approx(0, abs=0)
+    assert pump.flow_suction[0] == pytest.approx(2 * double.flow_suction[0], rel=1e-12)
+
+
+def test_a_chamber_open_to_the_suction_pipe_evens_what_is_drawn_in() -> None:
+    """The annulus gives half of what the plunger draws in, and takes it again on the return."""
+    text = DIFFERENTIAL.replace("crank_end: 5 bar", "crank_end: -0.3 bar")
+    state = pump_of(text).at([60.0, 300.0])
+    plain = pump_of(DIFFERENTIAL.replace("  crank_end: 5 bar\n", "")).at([60.0, 300.0])
+    assert state.flow == pytest.approx(plain.flow, rel=1e-12)
+    assert state.flow_suction == pytest.approx([plain.flow_suction[0] / 2] * 2, rel=1e-12)
+
+
+def test_an_open_chamber_has_no_slip() -> None:
+    """Only what passes valves is lost: 0.9 A − A/2 on the return, A/2 on the outstroke."""
+    slip = pump_of(DIFFERENTIAL.replace("pump: {", "pump: {slip: 10 %, ")).at([60.0, 300.0])
+    plain = pump_of(DIFFERENTIAL).at([60.0, 300.0])
+    assert slip.flow[0] == pytest.approx(plain.flow[0], rel=1e-12)
+    assert slip.flow[1] == pytest.approx(plain.flow[1] * 0.8, rel=1e-12)
+
+
+@pytest.mark.parametrize("end", ["0 bar", "2 bar"])
+def test_another_pressure_leaves_the_chamber_alone(end: str) -> None:
+    """The ambient one is open to the air; any other one is said to count for nothing."""
+    text = DIFFERENTIAL.replace("crank_end: 5 bar", f"crank_end: {end}")
+    plain = pump_of(DIFFERENTIAL.replace("  crank_end: 5 bar\n", ""))
+    assert pump_of(text)["flow_max"].value == pytest.approx(plain["flow_max"].value, rel=1e-14)
+    said = run("delivery", "-", "--key-values", text=text).stdout
+    assert ("that of neither pipe" in said) == (end == "2 bar")
+
+
+def test_absolute_pressures_join_the_same_pipe() -> None:
+    absolute = DIFFERENTIAL.replace("indicator:", "indicator:\n  pressures: absolute")
+    absolute = absolute.replace("-0.3 bar", "0.7 bar")
+    assert pump_of(absolute)["flow_max"].value == pump_of(DIFFERENTIAL)["flow_max"].value
+
+
+def test_a_small_annulus_gives_and_takes_its_own_area() -> None:
+    """Of 0.19 A, open to the suction pipe: 0.81 A on the outstroke, 0.19 A on the return."""
+    text = DIFFERENTIAL.replace(f"crank_end_rod: {ROD!r}", "crank_end_rod: 90")
+    text = text.replace("crank_end: 5 bar", "crank_end: -0.3 bar")
+    state = pump_of(text).at([60.0, 300.0])
+    annulus, slopes = 0.19 * AREA, pump_of(DIFFERENTIAL).at([60.0, 300.0]).flow_suction[0] / AREA
+    assert state.flow_suction == pytest.approx([(AREA - annulus) * slopes, annulus * slopes])
+
+
+def test_a_sweep_over_the_bore_of_a_differential_pump() -> None:
+    rows = api.sweep(DIFFERENTIAL, {"bore": ["100 mm", "110 mm", "120 mm"]}, ["flow_max"])
+    alone = [
+        pump_of(DIFFERENTIAL.replace("bore: 100", f"bore: {bore}"))["flow_max"].value
+        for bore in (100, 110, 120)
+    ]
+    assert list(rows["flow_max"]) == pytest.approx(alone, rel=1e-13)

@@ -50,6 +50,7 @@ TEACHING = {
     "w9": "free-angle",
     "waterworks": "piston-force",
     "waterworks-two-cranks": "effort",
+    "wobbler": "mechanism",
     "yoke-frame-pump": "mechanism",
 }
 """Shipped machine -> the picture that teaches most of it."""
@@ -72,7 +73,14 @@ BEST = {
 }
 """Picture -> the shipped machine that shows it best; the others are of the waterworks engine."""
 USUAL = "waterworks"
-MOVING = ("scotch-yoke-pump", "shaper", "crank-rocker", "coupled-axle", "yoke-frame-pump")
+MOVING = (
+    "scotch-yoke-pump",
+    "shaper",
+    "crank-rocker",
+    "coupled-axle",
+    "yoke-frame-pump",
+    "wobbler",
+)
 """The other mechanisms of the book."""
 SET = {"effort-cranks": "efficiency=0.9", "piston-force-crank": "efficiency=0.9"}
 """Picture -> what is set for it: without losses no line differs by them."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.mechanisms.four_bar import FourBar
+from kurbel.mechanisms.oscillating_cylinder import OscillatingCylinder
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank, YokeFrame
@@ -145,7 +146,23 @@ def parallel_crank(machine: ParallelCrank, turn: Any, load: Any) -> Expected:
     }
 
 
+def oscillating_cylinder(machine: OscillatingCylinder, turn: Any, load: Any) -> Expected:
+    """The trunnions stand at the right of the shaft; the piston is pushed along the line from them to the pin."""
+    pin = machine.crank * turn
+    reach = abs(machine.trunnion - pin)
+    cylinder = (machine.trunnion - pin) / reach
+    turning = -along(1j * pin, 1j * cylinder) / reach
+    return {
+        **on_pin(turn, -load * cylinder),
+        "x": reach,
+        "F_pin": load,
+        "theta": np.degrees(np.angle(cylinder)),
+        "theta_dot": turning,
+    }
+
+
 FREE_BODIES: dict[type, Callable[[Any, Any, Any], Expected]] = {
+    OscillatingCylinder: oscillating_cylinder,
     SliderCrank: slider_crank,
     YokeFrame: yoke_frame,
     ScotchYoke: scotch_yoke,

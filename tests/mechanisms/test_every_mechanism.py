@@ -16,6 +16,7 @@ from kurbel.machine.parts import Moment, RamForce
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.kinds import MECHANISMS
+from kurbel.mechanisms.oscillating_cylinder import OscillatingCylinder
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank, YokeFrame
@@ -52,6 +53,8 @@ MACHINES = {
     "drag link": FourBar(0.3, 0.25, 0.3, 0.1),
     "drag link, nearly flat": FourBar(0.3, 0.25, 0.2, 0.1499),
     "drag link, long coupler": FourBar(0.2, 2.0, 1.9, 0.05),
+    "oscillating cylinder": OscillatingCylinder(0.01, 0.04),
+    "oscillating cylinder, trunnions near": OscillatingCylinder(0.3, 0.301),
     "parallel crank": ParallelCrank(0.3, 2.0),
     "parallel crank, heavy coupler": ParallelCrank(0.3, 2.0, 140.0),
 }
@@ -60,6 +63,7 @@ TURNING = {name: machine for name, machine in MACHINES.items() if machine.turns}
 DIRECTIONS = {
     "four-bar": lambda machine, angle: machine.closed_at(angle)[:2],
     "slotted-lever": lambda machine, angle: machine._lever_at(angle)[:2],
+    "oscillating-cylinder": lambda machine, angle: machine._direction(angle),
 }
 """(sin θ, cos θ) of the member that swings."""
 MOVED = {

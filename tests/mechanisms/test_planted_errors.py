@@ -36,6 +36,11 @@ SLIPS = [
     ("four_bar", "swing_at", "ahead - bearing", "ahead + bearing"),
     ("four_bar", "swing_at", "angle.versine + (self", "angle.versine - (self"),
     ("four_bar", "coupler_force_factor", "self.coupler / self.frame", "-self.coupler / self.frame"),
+    ("oscillating_cylinder", "curvature", "angle.cos - slope * slope", "angle.cos"),
+    ("oscillating_cylinder", "_direction", "return -self.crank", "return self.crank"),
+    ("oscillating_cylinder", "radial", "angle.cos * cos + angle.sin * sin", "angle.cos"),
+    ("oscillating_cylinder", "swing_at", "slope = -crank", "slope = crank"),
+    ("oscillating_cylinder", "crank_angles_at", "reach + self._gap)", "reach)"),
     ("parallel_crank", "", "-one.crank * angle.versine", "-one.crank * angle.sin"),
     ("parallel_crank", "", "-one.crank * angle.cos", "one.crank * angle.cos"),
     (

@@ -63,7 +63,16 @@ def test_links_are_stiff_unless_something_slides_on_them(name: str) -> None:
         assert np.ptp(abs(joints[fixed])) == 0
 
 
-@law_of_each(name for name, one in DRAWN.items() if one.slides)
+@law_of_each(name for name, one in DRAWN.items() if one.swings_cylinder)
+def test_the_piston_moves_in_its_cylinder_as_x_does(name: str) -> None:
+    mechanism, joints = DRAWN[name], sketch_of(DRAWN[name])
+    outward = (joints["trunnion"] - joints["pin"]) / abs(joints["trunnion"] - joints["pin"])
+    place = ((joints["piston"] - joints["trunnion"]) * outward.conj()).real
+    x = np.asarray(mechanism.coordinate(CrankAngle.of(DEGREES)))
+    assert np.allclose(place - place[0], x[0] - x, atol=1e-12)
+
+
+@law_of_each(name for name, one in DRAWN.items() if one.slides and not one.swings_cylinder)
 def test_the_output_moves_as_x_does(name: str) -> None:
     mechanism, joints, sketch = DRAWN[name], sketch_of(DRAWN[name]), whole(DRAWN[name])
     toward = complex(*sketch.toward)

@@ -4,12 +4,14 @@ import cmath
 import itertools
 import math
 import re
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import fixed_quad
 from scipy.special import ellipk
 
+from command import answer
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
@@ -290,3 +292,27 @@ def test_a_load_that_is_only_rounding_has_no_direction_of_its_own() -> None:
     loads_at = np.array([1000 + 1000j, -1e-10 - 1e-10j, 0.0, -2000.0])
     columns = BearingColumns(np.arange(4.0), {"engine": loads_at}, 2000.0, None)
     assert columns.direction("engine") == pytest.approx([45.0, 0.0, 0.0, 180.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("command", ["bearings", "balance", "flywheel", "stress"])
+def test_bank_angles_count_from_the_stroke_line_of_cylinder_1(command: str) -> None:
+    """The same machine with 30° more at every stroke line has the same figures: they are between the lines."""
+    text = (
+        HEAD + f"cylinders:\n  - {EACH}    axial_position: 0 mm\n    bank_angle: 0 deg\n"
+        "  - {like: cylinder 1, axial_position: 150 mm, crank_position: 200 deg, bank_angle: 70 deg}\n"
+    )
+    turned = text.replace("bank_angle: 0 deg", "bank_angle: 30 deg").replace("70 deg", "100 deg")
+    documents = [answer(command, "-", text=version) for version in (text, turned)]
+    for document in documents:
+        document.pop("inputs", None)
+    assert figures(documents[1]) == pytest.approx(figures(documents[0]), rel=1e-9, abs=1e-6)
+
+
+def figures(document: Any) -> list[float]:
+    """All numbers of a document in their order."""
+    if isinstance(document, dict):
+        return [number for value in document.values() for number in figures(value)]
+    if isinstance(document, list):
+        return [number for value in document for number in figures(value)]
+    is_number = isinstance(document, (int, float)) and not isinstance(document, bool)
+    return [float(document)] if is_number else []

@@ -1,6 +1,7 @@
 """Engines as they are built: the figures of ten machines, by calculations that are independent of kurbel."""
 
 import inspect
+import math
 import textwrap
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +19,7 @@ from kurbel.machine.several import intervals, on_throws
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
-LATER = ("radial-9", "v-link", "wobbler", "opposed")
+LATER = ("radial-9", "v-link")
 """Machines with keys that kurbel does not have yet."""
 MACHINES: dict[str, dict[str, Any]] = {}
 for document in yaml.safe_load_all(
@@ -63,6 +64,14 @@ def column(columns: list[dict[str, Any]], id: str) -> list[Any]:
     return next(one["values"] for one in columns if one["id"] == id)
 
 
+def swept_volumes(path: Path, degrees: list[float]) -> list[float]:
+    """Return the sum of A x of two pistons of 105 mm at angles of crank 1, from the columns that kurbel prints."""
+    printed = answer("motion", path, "--shaft-angle", "--angles", ",".join(map(str, degrees)))
+    area = math.pi / 4 * 0.105**2
+    travels = [column(part["columns"], "x") for part in printed["cylinders"]]
+    return [area * sum(of_pistons) for of_pistons in zip(*travels)]
+
+
 def is_figure(text: str, figure: dict[str, Any], path: Path) -> None:
     """Assert that kurbel gives this figure of a machine file."""
     path.write_text(text, encoding="utf-8")
@@ -78,6 +87,13 @@ def is_figure(text: str, figure: dict[str, Any], path: Path) -> None:
             assert pins_behind(machine) == pytest.approx(figure["value"], rel=1e-9, abs=1e-9)
         return
     words = figure["ask"].split()
+    if words[0] == "sum":
+        degrees = [step / 2 for step in range(720)]
+        volumes = swept_volumes(path, degrees)
+        value = {"largest": max, "smallest": min}[figure["what"]](volumes)
+        assert value == pytest.approx(figure["value"], rel=1e-9)
+        assert degrees[volumes.index(value)] == pytest.approx(figure["at_deg"], abs=1e-3)
+        return
     if "order" in figure:
         printed = answer(*words, path, "--orders")
         (table,) = (one for one in printed["machine_place_tables"] if one["id"] == "orders")
@@ -223,6 +239,51 @@ def test_a_sweep_of_split_pins_is_the_machines_one_by_one(tmp_path: Path) -> Non
         _, angle, moment = row.split(",")[:3]
         single = Case(loads(V6.replace("-30 deg", f"{angle} deg")))
         assert float(moment) == pytest.approx(single.balance.M_free_max.value, rel=1e-12)
+
+
+WOBBLER = MACHINES["wobbler"]["machine"]
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ("trunnion: 10 mm", "the crank pin would pass through the trunnions"),
+        ("trunnion: 40 mm\nmasses: {piston: 1 kg}", "the cylinder swings with its piston"),
+        ("trunnion: 40 mm\ninclination: 90 deg", "the cylinder swings with its piston"),
+        ("trunnion: 40 mm\noffset: 2 mm", "belongs to 'mechanism: slider-crank'"),
+        ("trunnion: 40 mm\nfriction: {crosshead: 0.1}", "an oscillating-cylinder has no"),
+        ("trunnion: 40 mm\nfriction: {crank_pin: 0.1}", "an oscillating-cylinder has no"),
+    ],
+)
+def test_an_oscillating_cylinder_that_cannot_be(keys: str, message: str) -> None:
+    with pytest.raises(MachineFileError, match=message):
+        loads(WOBBLER.replace("trunnion: 40 mm", keys))
+
+
+def test_other_words_for_an_oscillating_cylinder_lead_to_it() -> None:
+    with pytest.raises(MachineFileError, match="oscillating-cylinder"):
+        loads(WOBBLER.replace("oscillating-cylinder", "wobbler"))
+
+
+def test_an_oscillating_cylinder_turns_as_the_slotted_lever_half_a_turn_on() -> None:
+    """The same triangle of shaft, pin and pivot, of which one counts from the far and one from the near pin."""
+    lever = loads("{speed: 1000 rpm, mechanism: slotted-lever, crank: 10 mm, frame: 40 mm}")
+    cylinder = Case(loads(WOBBLER)).cylinders[0].at([0.0, 25.0, 111.0, 250.0])
+    swing = Case(lever).cylinders[0].at([180.0, 205.0, 291.0, 430.0])
+    for id in ("theta", "theta_dot", "theta_ddot"):
+        assert cylinder[id] == pytest.approx(swing[id], rel=1e-12, abs=1e-12)
+
+
+def test_at_the_shaft_angle_there_are_no_figures_of_the_own_angle(tmp_path: Path) -> None:
+    path = tmp_path / "opposed.yaml"
+    path.write_text(MACHINES["opposed"]["machine"], encoding="utf-8")
+    printed = answer("motion", path, "--shaft-angle", "--step", "90")
+    exhaust = printed["cylinders"][1]
+    assert not exhaust.get("key_values")
+    own = answer("motion", path, "--angles", "11,101")["cylinders"][1]
+    assert column(exhaust["columns"], "x")[:2] == column(own["columns"], "x")
+    refused = run("motion", path, "--shaft-angle", "--key-values", "c_max")
+    assert "--shaft-angle has a table" in refused.output
 
 
 SLIPS: tuple[tuple[str, Callable[..., Any], str, str], ...] = (

@@ -102,3 +102,9 @@ def test_one_piston_has_no_totals_besides_its_own() -> None:
     assert (
         "machine_key_values" not in run("forces", str(CONFIGS["locomotive"]), "-f", "json").stdout
     )
+
+
+def test_csv_of_one_cylinder_has_no_column_for_its_name() -> None:
+    rows = run("forces", str(CONFIGS["waterworks"]), "--key-values", "-f", "csv").stdout
+    assert rows.startswith("key_value,unit,value,at_deg\nstroke,m,0.8,\n")
+    assert rows.splitlines()[-1].startswith("mechanical_efficiency,,0.98945")

@@ -42,11 +42,11 @@ def text_of(name: str, **changes: Any) -> str:
     film = FILMS[name]
     machine = yaml.safe_load(CONFIGS[film["file"]].read_text(encoding="utf-8"))
     machine |= film.get("instead", {})
-    machine["oil_film"] = given(film["oil_film"] | changes)
-    return str(yaml.safe_dump(given(machine), sort_keys=False))
+    machine["oil_film"] = without_gaps(film["oil_film"] | changes)
+    return str(yaml.safe_dump(without_gaps(machine), sort_keys=False))
 
 
-def given(keys: dict[str, Any]) -> dict[str, Any]:
+def without_gaps(keys: dict[str, Any]) -> dict[str, Any]:
     """Return the keys that have a value."""
     return {key: value for key, value in keys.items() if value is not None}
 
@@ -130,10 +130,10 @@ def test_mobility(
     theory: str, epsilon: float, angle: float, slenderness: float, along: float, across: float
 ) -> None:
     seen = seen_from_load(epsilon, angle)
-    of = shape(slenderness, theory)
+    bearing = shape(slenderness, theory)
     p, q = np.array(seen.real), np.array(seen.imag)
-    result = oil_film.mobility(p, q, of.lam, of.finite)
-    assert result == pytest.approx((along, across), rel=1e-13)
+    mobilities = oil_film.mobility(p, q, bearing.lam, bearing.finite)
+    assert mobilities == pytest.approx((along, across), rel=1e-13)
 
 
 @pytest.mark.parametrize(("epsilon", "angle", "peak"), PEAKS)
@@ -142,12 +142,12 @@ def test_largest_pressure_of_a_short_film(epsilon: float, angle: float, peak: fl
     assert oil_film.peak_factor(seen) == pytest.approx(peak, rel=1e-13)
 
 
-def film_under(load: Callable[[np.ndarray], Any], turning: float, of: FilmShape) -> OilFilm:
+def film_under(load: Callable[[np.ndarray], Any], turning: float, of_shape: FilmShape) -> OilFilm:
     """Return the film under a load (n,) in N at crank angles in radians, of a shaft with 1 rad/s."""
     pieces = Pieces.between(NOWHERE, 1, 360.0)
     phi = np.radians(pieces.degrees)
     pressed = np.asarray(load(phi) + np.zeros_like(phi), complex)
-    return OilFilm(of, pieces, pressed, np.full_like(phi, turning), 1.0, None)
+    return OilFilm(of_shape, pieces, pressed, np.full_like(phi, turning), 1.0, None)
 
 
 @pytest.mark.parametrize(("slenderness", "epsilon", "sommerfeld", "attitude"), STEADY)
@@ -167,11 +167,11 @@ def test_steady_load(
     [(0.3, 0.2990), (0.5, 0.4976), (0.7, 0.6975), (0.9, 0.8988), (0.95, 0.9494)],
 )
 def test_short_bearing_is_that_of_ocvirk_within_its_fit(ocvirk: float, fitted: float) -> None:
-    """NACA TN 2808: F/(μ ω L³ D/(8 c²)) = ε/(1 − ε²)² √(π² (1 − ε²) + 16 ε²)/… under a steady load."""
+    """NACA TN 2808, a steady load: F = μ ω L³ R/(4 c²) · ε/(1 − ε²)² √(π² (1 − ε²) + 16 ε²)."""
     rest = 1 - ocvirk**2
     lam = 0.25
     load = ocvirk / rest**2 * math.sqrt(math.pi**2 * rest + 16 * ocvirk**2)
-    # F = μ ω L³ R/(4 c²) · load, and K F = F (2c/D)²/(μ L D ω)
+    # K F = F (2c/D)²/(μ L D ω)
     film = film_under(lambda phi: lam**2 / 2 * load, 1.0, shape(lam, "short"))
     assert film.eccentricity_max.value == pytest.approx(fitted, abs=5.1e-5)
 
@@ -203,7 +203,7 @@ def test_no_load_leaves_the_journal_in_the_middle() -> None:
 @pytest.mark.parametrize("size", [1e-5, 1e-2, 1e4, 1e8])
 def test_orbits_from_hardly_any_load_to_the_wall(size: float) -> None:
     film = film_under(lambda phi: size * (1 + 0.5 * np.cos(phi)), 1.0, shape(0.5))
-    assert film.repeats_itself
+    assert not film.obstacle
     assert 0 < film.film_thickness_min.value < film.shape.clearance
 
 
@@ -213,7 +213,7 @@ def test_a_load_that_turns_with_half_the_speed_has_no_film_that_repeats(size: fl
     pieces = Pieces.between(NOWHERE, 1, 720.0)
     turning = size * np.exp(0.5j * np.radians(pieces.degrees))
     film = OilFilm(shape(0.5), pieces, turning, np.ones_like(turning.real), 1.0, None)
-    assert not film.repeats_itself
+    assert "no film repeats" in film.obstacle
     assert film.film_thickness_min is None
 
 
@@ -227,9 +227,9 @@ def marched(bearing: Bearing, frame: str) -> tuple[np.ndarray, np.ndarray]:
     """Return crank angles, and ε by marching through a cycle in a frame, seen from the shell, from the orbit's start."""
     film = bearing.film
     assert film
-    of = film.shape
-    machine_omega = bearing.omega
-    K = of.mobility_number(machine_omega)
+    K = film.shape.mobility_number(bearing.omega)
+
+    # the angles of all steps and stages, and the load there
     nodes = DOP853.C[: DOP853.n_stages]
     ends = film.pieces.ends
     widths = np.repeat(np.diff(ends) / STEPS, STEPS)
@@ -241,6 +241,7 @@ def marched(bearing: Bearing, frame: str) -> tuple[np.ndarray, np.ndarray]:
     frames = bearing._frames(degrees.ravel(), middles.ravel())
     sign = -1.0 if bearing.of_rod else 1.0
     load = sign * K * frames[frame].reshape(degrees.shape)
+
     # how fast the frame turns, and how the shell is seen from it
     shell = {"crank_pin": "rod", "crosshead_pin": "rod", "journals": "engine"}[bearing.key]
     psi_slope = _swing(bearing, degrees) if bearing.of_rod else np.zeros_like(degrees)
@@ -253,20 +254,28 @@ def marched(bearing: Bearing, frame: str) -> tuple[np.ndarray, np.ndarray]:
     y = film.at_angles(ends[:1], np.array([1.0 + 0j]))
     assert y
     start = complex(*y.y[:, 0]) / math.hypot(1.0, *y.y[:, 0]) / to_shell[0]
-    return starts, _marched(start, load, entrainment, np.radians(widths), of) * to_shell
+    return starts, _marched(start, load, entrainment, np.radians(widths), film.shape) * to_shell
 
 
 def _swing(bearing: Bearing, degrees: np.ndarray) -> np.ndarray:
+    """Return dψ/dφ."""
     mechanism = bearing.cylinders[0].drive.mechanism
     sin = mechanism.lam * np.sin(np.radians(degrees))
     return np.asarray(mechanism.lam * np.cos(np.radians(degrees)) / np.sqrt(1 - sin**2))
 
 
 def _marched(
-    epsilon: complex, load: np.ndarray, entrainment: np.ndarray, widths: np.ndarray, of: FilmShape
+    epsilon: complex,
+    load: np.ndarray,
+    entrainment: np.ndarray,
+    widths: np.ndarray,
+    film_shape: FilmShape,
 ) -> np.ndarray:
-    lam, finite = of.lam, of.finite
-    stages, weights = DOP853.A, DOP853.B
+    """Return ε at the starts of steps; load: K F, and entrainment, (steps, stages), in the frame of ε."""
+    lam = film_shape.lam
+    finite = film_shape.finite
+    stages = DOP853.A
+    weights = DOP853.B
     path = []
     for step, width in enumerate(widths.tolist()):
         path.append(epsilon)
@@ -316,12 +325,12 @@ def test_two_lands_are_two_bearings_of_half_the_load() -> None:
     def load(phi: np.ndarray) -> np.ndarray:
         return 3 + np.exp(1j * phi)
 
-    one = film_under(load, 1.0, land)
-    two = film_under(lambda phi: 2 * load(phi), 1.0, both)
-    assert two.film_thickness_min.value == pytest.approx(one.film_thickness_min.value, rel=1e-12)
-    assert two.film_pressure_max.value == pytest.approx(one.film_pressure_max.value, rel=1e-12)
-    assert two.film_loss == pytest.approx(2 * one.film_loss, rel=1e-12)
-    assert two.side_flow == pytest.approx(one.side_flow, rel=1e-12)
+    half = film_under(load, 1.0, land)
+    whole = film_under(lambda phi: 2 * load(phi), 1.0, both)
+    assert whole.film_thickness_min.value == pytest.approx(half.film_thickness_min.value, rel=1e-12)
+    assert whole.film_pressure_max.value == pytest.approx(half.film_pressure_max.value, rel=1e-12)
+    assert whole.film_loss == pytest.approx(2 * half.film_loss, rel=1e-12)
+    assert whole.side_flow == pytest.approx(half.side_flow, rel=1e-12)
 
 
 VEE = """
@@ -386,6 +395,19 @@ def test_a_bearing_without_sizes_has_no_film_and_one_that_is_not_named_none_eith
     assert parts["bearing A"].film_obstacle == ""
 
 
+def test_a_machine_without_the_key_leaves_nothing_out() -> None:
+    text = CONFIGS["waterworks"].read_text(encoding="utf-8")
+    for bearing in bearings_of(text).values():
+        assert (bearing.film, bearing.film_obstacle) == (None, "")
+
+
+def test_a_groove_as_wide_as_the_shell_of_a_rod_leaves_no_film() -> None:
+    bearing = bearings_of(VEE.replace("25 um", "25 um, groove: 20 mm"))["crank pin of cylinder 1"]
+    assert bearing.film_obstacle == "the groove leaves no land of the length of a rod"
+    assert bearing.film_thickness_min is None
+    assert bearing.at([0.0]).film_thickness is None
+
+
 REFUSED = [
     ({"crank_pin": None, "crosshead_pin": None, "journals": None}, "give 'crank_pin'"),
     ({"viscosity": None}, "'crank_pin' needs a 'viscosity'"),
@@ -407,6 +429,7 @@ REFUSED = [
         {"journals": {"clearance": "0.1 mm", "diametral_clearance": "0.2 mm"}},
         "'clearance' and 'diametral_clearance' mean the same",
     ),
+    ({"temperature": "70 °C"}, "give the 'viscosity' at that temperature"),
     ({"theory": "long"}, "'finite' or 'short'"),
 ]
 
@@ -455,8 +478,8 @@ assert LAM
 
 def without_groove(films: OilFilms, key: str, diameter: float, length: float) -> FilmShape:
     bearing = films.bearings[key]
-    result = FilmShape.of_bearing(films, key, diameter, length)
-    return result._replace(length=result.length + bearing.groove, lands=1)
+    right = FilmShape.of_bearing(films, key, diameter, length)
+    return right._replace(length=right.length + bearing.groove, lands=1)
 
 
 def flow_of_both_sides(film: OilFilm, pieces: Pieces) -> tuple[np.ndarray, np.ndarray]:
@@ -492,8 +515,8 @@ def test_figures_catch(error: str, monkeypatch: pytest.MonkeyPatch) -> None:
     parts = {part.name: part for part in Case(loads(text_of(name))).bearings.parts}
     assert misses(name, parts)
     if thickness is not None:
-        result = 1e6 * parts["crank pin"].film_thickness_min.value
-        assert result == pytest.approx(thickness, rel=2e-3)
+        micrometres = 1e6 * parts["crank pin"].film_thickness_min.value
+        assert micrometres == pytest.approx(thickness, rel=2e-3)
 
 
 def test_figures_catch_constants_that_are_swapped(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -176,22 +176,30 @@ def test_the_rod_turns_back_from_exactly_there_on(degrees: float) -> None:
     assert abs(after - before) > 1e-3 * FORCE
 
 
-def test_rods_of_one_throw_share_what_its_counterweight_loads_the_journals_with() -> None:
-    """Two equal cylinders opposite one another, each with its whole bearings: f r |F + u ω²/2| of each, a = b."""
+@pytest.mark.parametrize(("spacing", "apart"), [("", 20.0), ("rod_spacing: 0 mm, ", 0.0)])
+def test_rods_of_one_throw_share_what_its_counterweight_loads_the_journals_with(
+    spacing: str, apart: float
+) -> None:
+    """Each rod with both its bearings, from its own place on the pin, ± half of what the two are apart.
+
+    In the middle f r |F + u ω²/2|, a = b.
+    """
     gas = "indicator: {head_end: {constant: {expansion: 9 bar, compression: 2 bar}}}"
     shape = f"crank: 45 mm, rod: 150 mm, bore: 90 mm, {gas}"
     each = f"{{{shape}, friction: {{journals: 0.04}}, masses: {{piston: 1.2 kg}}}}"
     shaft = (
-        "crankshaft: {a: 55 mm, b: 55 mm, web_distance: 30 mm, web_thickness: 15 mm, web_width: 60 mm,\n"
+        f"crankshaft: {{{spacing}a: 55 mm, b: 55 mm, web_distance: 30 mm, web_thickness: 15 mm, web_width: 60 mm,\n"
         "  pin_diameter: 50 mm, pin_length: 40 mm, journal_diameter: 60 mm, journal_length: 24 mm}\n"
     )
     vee = f"cylinders:\n  count: 2\n  bank_angles: [0 deg, 90 deg]\n  each: {each}\n"
     weight = "counterweights: [{product: 0.06 kg m, angle: 180 deg}]\n"
     case = Case(loads("speed: 1500 rpm\n" + shaft + vee + weight))
     pull = 0.06 * (50 * math.pi) ** 2 / 2
-    for cylinder in case.cylinders:
+    for cylinder, place in zip(case.cylinders, (-apart / 2, apart / 2)):
         state = cylinder.at([15.0, 80.0, 200.0, 310.0])
         assert state.rubbing is not None
         radial, tangential = on_pin(state.without_pin_friction)
-        loads_of_journals = np.hypot(radial + pull, tangential)
+        loads_of_journals = 0.0
+        for share in ((55 - place) / 55, (55 + place) / 55):
+            loads_of_journals += np.hypot(radial * share + pull, tangential * share) / 2
         assert state.rubbing.journals == pytest.approx(0.04 * 0.030 * loads_of_journals, rel=1e-12)

@@ -1,7 +1,8 @@
 """Rivals for the speed of the shaft: Runge and Kutta's method with fixed steps, and scipy's methods where installed.
 
 Each is marched cycle by cycle until the speed repeats, or searches for the speed at φ = 0 with which one cycle repeats,
-by Newton's method ("shooting"). All are given the equation and the textbook's torque as polynomials: what those cost is
+by Newton's method ("shooting"). Under a load that does not depend on the speed a rigid shaft is marched over one cycle,
+and its level moved to the nominal mean. All are given the equation and the textbook's torque as polynomials: what those cost is
 not in their times. None is given the corners. A method that needs too many evaluations is stopped by their number, so
 that a report has the same errors on every machine.
 """
@@ -15,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.accuracy.methods import scipy_integrate
-from kurbel.accuracy.shaft import EVERY, ElasticShaft, Fits, ShaftEquation, SpeedOfShaft
+from kurbel.accuracy.shaft import EVERY, ElasticShaft, Fits, RigidShaft, ShaftEquation, SpeedOfShaft
 from kurbel.arrays import Array
 
 _CYCLES = 20
@@ -72,6 +73,10 @@ class Problem:
             values.append(first - place * second)
         return values[0], values[1]
 
+    def known_at(self, degrees: Array) -> Array:
+        """Return torque and energy (2, n) at angles of the cycle."""
+        return self.fits.at(degrees, np.clip(degrees, 1e-9, self.cycle - 1e-9))
+
     def rate(self, known: tuple[float, float], y: Sequence[float]) -> list[float]:
         """Return y′ by radians; raises Stopped where the shaft stands still or its speed is beyond all bounds."""
         self.evaluations += 1
@@ -92,7 +97,7 @@ class Problem:
 
     def speed(self, course: Course) -> SpeedOfShaft:
         """Return what is compared of a cycle: extremes are those of its points."""
-        _, energy = self.fits.at(course.degrees, np.clip(course.degrees, 1e-9, self.cycle - 1e-9))
+        _, energy = self.known_at(course.degrees)
         w = np.asarray(self.equation.speed(energy, list(course.y.T)))
         slow = 1 / (1 + w)
         slowness = np.diff(course.degrees) @ (slow[1:] + slow[:-1]) / (2 * self.cycle)
@@ -107,6 +112,8 @@ class Problem:
 
 Turn = Callable[[Array], Course]
 """Takes y at the beginning of a cycle, returns the cycle."""
+Reach = Callable[[Problem, Turn, float], Marched]
+"""Reaches the periodic state; the number: how closely it repeats, relative to its swing."""
 
 
 # one cycle by a method
@@ -162,8 +169,8 @@ def march(problem: Problem, turn: Turn, close: float) -> Marched:
         change = np.abs(course.y[-1] - y)
         y = course.y[-1]
         if (change <= close * np.ptp(course.y, axis=0)).all():
-            return Marched("periodic", problem.speed(course), problem.evaluations)
-    return Marched(f"not periodic in {_CYCLES} cycles", problem.speed(course), problem.evaluations)
+            return _marched("periodic", problem, course)
+    return _marched(f"not periodic in {_CYCLES} cycles", problem, course)
 
 
 def shoot(problem: Problem, turn: Turn, close: float) -> Marched:
@@ -174,51 +181,70 @@ def shoot(problem: Problem, turn: Turn, close: float) -> Marched:
         missed = course.y[-1] - y
         swing = np.ptp(course.y, axis=0)
         if (np.abs(missed) <= close * swing).all():
-            return Marched("periodic", problem.speed(course), problem.evaluations)
+            return _marched("periodic", problem, course)
         slopes = np.empty((len(y), len(y)))
         for number, width in enumerate(1e-5 * swing):
             moved = y.copy()
             moved[number] += width
             slopes[:, number] = (turn(moved).y[-1] - course.y[-1]) / width
         y = y - np.linalg.solve(slopes - np.eye(len(y)), missed)
-    return Marched("no convergence", problem.speed(course), problem.evaluations)
+    return _marched("no convergence", problem, course)
+
+
+def march_once(problem: Problem, turn: Turn, close: float) -> Marched:
+    """March one cycle: under a load that does not depend on the speed a rigid shaft repeats it at any level."""
+    return _marched("periodic", problem, turn(problem.start()))
+
+
+def _marched(state: str, problem: Problem, course: Course) -> Marched:
+    """Return the speed of a cycle; where its level is free, at that of the nominal mean."""
+    if problem.equation.load.is_constant:
+        widths = np.diff(course.degrees) / problem.cycle
+        weights = (np.append(widths, 0.0) + np.append(0.0, widths)) / 2
+        _, energy = problem.known_at(course.degrees)
+        course = Course(course.degrees, problem.equation.leveled(energy, course.y.T, weights).T)
+    return Marched(state, problem.speed(course), problem.evaluations)
 
 
 def rivals(problem: Callable[[], Problem]) -> Iterator[tuple[str, str, Callable[[], Marched]]]:
     """Yield name, how finely, and what computes the speed anew."""
-    scipy = scipy_integrate()
-    for goal, reach in (("marched", march), ("by shooting", shoot)):
-        for steps in _STEPS:
-            yield (
-                f"RK4 {goal}",
-                str(steps),
-                partial(_reached, problem, reach, 1e-12, runge_kutta, steps),
-            )
-        for method in ("RK45", "DOP853", "Radau", "LSODA") if scipy else ():
-            for tolerance in _TOLERANCES if reach is march else (_CLOSE,):
-                run = partial(
-                    _reached,
-                    problem,
-                    reach,
-                    tolerance,
-                    by_scipy,
-                    scipy.solve_ivp,
-                    method,
-                    tolerance,
-                )
-                yield f"{method} {goal}", f"{tolerance:.0e}", run
+    equation = problem().equation
+    if equation.load.is_constant and isinstance(equation, RigidShaft):
+        yield from _with(problem, "over one cycle", march_once, _TOLERANCES)
+        return
+    yield from _with(problem, "marched", march, _TOLERANCES)
+    # a cycle that repeats at any level is none to search for
+    if not equation.load.is_constant:
+        yield from _with(problem, "by shooting", shoot, (_CLOSE,))
+
+
+def _with(
+    problem: Callable[[], Problem], goal: str, reach: Reach, tolerances: tuple[float, ...]
+) -> Iterator[tuple[str, str, Callable[[], Marched]]]:
+    """Yield the rivals that reach the periodic state in one way."""
+    for steps in _STEPS:
+        run = partial(_reached, problem, reach, 1e-12, runge_kutta, steps)
+        yield f"RK4 {goal}", str(steps), run
+    integrate = scipy_integrate()
+    if integrate is None:
+        return
+    for method in ("RK45", "DOP853", "Radau", "LSODA"):
+        for tolerance in tolerances:
+            options = (integrate.solve_ivp, method, tolerance)
+            run = partial(_reached, problem, reach, tolerance, by_scipy, *options)
+            yield f"{method} {goal}", f"{tolerance:.0e}", run
 
 
 def _reached(
     problem: Callable[[], Problem],
-    reach: Callable[[Problem, Turn, float], Marched],
+    reach: Reach,
     close: float,
     method: Callable[..., Course],
     *options: Any,
 ) -> Marched:
-    """Return the periodic state, reached in one of two ways by one of the methods."""
+    """Return the periodic state, reached in one of the ways by one of the methods."""
     fresh = problem()
     try:
         return reach(fresh, partial(method, fresh, *options), close)
-    except Stopped as stopped:
+    except ArithmeticError as stopped:
         return Marched(str(stopped), None, fresh.evaluations)

@@ -7,8 +7,9 @@
                 J₂ ω_n² w₂′ = T − M_load(w₂)
                 ϑ′ = w₁ − w₂
 
-M is the torque at uniform rotation. With an elastic coupling J₁ has the mean of the moving masses, and time runs as at
-uniform rotation: the model of the solver. Primes are derivatives by φ in radians. Formulas have + − × ÷ and powers
+M is the torque at uniform rotation. A load that does not depend on the speed leaves its level free: then the mean of
+ω_n/ω is 1, or with an elastic coupling that of w is 0. With an elastic coupling J₁ has the mean of the moving masses,
+and time runs as at uniform rotation: the model of the solver. Primes are derivatives by φ in radians. Formulas have + − × ÷ and powers
 only: they take floats, arrays and mpmath's numbers alike.
 """
 
@@ -35,13 +36,11 @@ MOST = 200
 
 def without_reference(machine: Machine) -> Iterator[str]:
     """Yield why the speed of a machine has no independent calculation here."""
-    load, wheel = machine.load, machine.flywheel
+    wheel = machine.flywheel
     if not machine.speed or wheel is None or wheel.inertia is None:
         yield "there is no speed line without a speed, and a flywheel with an inertia"
-    if load is None or (load.slip is None and not load.power):
-        yield "the load does not depend on the speed"
-    for what in unknown(machine, "ΔE"):
-        yield f"no independent calculation of {what}"
+    for obstacle in unknown(machine, "ΔE"):
+        yield f"no independent calculation of {obstacle}"
     if machine.efficiency != 1:
         yield "no independent calculation of an efficiency"
 
@@ -59,11 +58,16 @@ class SpeedOfShaft(NamedTuple):
 
 
 class LoadLaw(NamedTuple):
-    """The load torque in N m over w, by slip s or power k; mean: at the nominal speed."""
+    """The load torque in N m over w, by slip s or power k, 0 where it is constant; mean: at the nominal speed."""
 
     mean: Precise
-    slip: float | None
-    power: float | None
+    slip: float | None = None
+    power: float = 0.0
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it does not depend on the speed."""
+        return self.slip is None and self.power == 0
 
     def torque(self, w: Precise) -> Precise:
         """Return M_load."""
@@ -75,7 +79,6 @@ class LoadLaw(NamedTuple):
         """Return dM_load/dw."""
         if self.slip is not None:
             return abs(self.mean) / self.slip + 0 * w
-        assert self.power is not None
         return self.mean * self.power * (1 + w) ** (self.power - 1)
 
 
@@ -107,6 +110,27 @@ class RigidShaft(NamedTuple):
         """Return the derivatives of y′ by y; dw/dz = 1/(J ω_n² (1 + w))."""
         w = self.speed(energy, y)
         return [[-self.load.slope(w) / (2 * energy * (1 + w))]]
+
+    def leveled(self, energy: Array, y: Array, weights: Array) -> Array:
+        """Return y plus the constant that makes the mean of ω_n/ω 1, by Newton's method; weights: of the mean.
+
+        Raises ArithmeticError where the shaft would stop.
+        """
+        z = y[0]
+        finest = 1e-32 if z.dtype == object else 1e-16
+        swing = float(z.max() - z.min())
+        for _ in range(80):
+            r = z / energy
+            if not bool((r > -1).all()):
+                break
+            slowness = (1 + r) ** -0.5
+            excess = ((slowness - 1) * weights).sum()
+            slope = (slowness**3 / energy * weights).sum() / 2
+            step = excess / slope
+            z = z + step
+            if abs(float(step)) <= finest * swing:
+                return z[np.newaxis]
+        raise ArithmeticError("no level of the speed has the nominal mean")
 
 
 class ElasticShaft(NamedTuple):
@@ -156,6 +180,11 @@ class ElasticShaft(NamedTuple):
             [k / self.second, d / self.second, -(d + rise) / self.second],
         ]
 
+    def leveled(self, energy: Array, y: Array, weights: Array) -> Array:
+        """Return y with speeds whose mean is nominal; weights: of the mean."""
+        mean = (y[1] * weights).sum()
+        return np.stack((y[0], y[1] - mean, y[2] - mean))
+
 
 ShaftEquation = Union[RigidShaft, ElasticShaft]
 """y′ = rate(torque, energy, y) of unknowns y."""
@@ -197,7 +226,6 @@ class TextbookShaft:
     def __init__(self, machine: Machine) -> None:
         assert machine.speed is not None
         assert machine.flywheel is not None
-        assert machine.load is not None
         self._book = TextbookMachine(Textbook(machine), "ΔE")
         self.cycle = 360 * machine.revolutions
         self.nominal = 2 * mp.pi * mpf(machine.speed)
@@ -207,7 +235,9 @@ class TextbookShaft:
 
         # the equation
         mean = self._mean(self._torque)
-        load = LoadLaw(mean, machine.load.slip, machine.load.power)
+        load = LoadLaw(mean)
+        if machine.load is not None:
+            load = LoadLaw(mean, machine.load.slip, machine.load.power or 0.0)
         self.equation: ShaftEquation = RigidShaft(load, self.nominal)
         if machine.coupling is not None:
             coupling, square = machine.coupling, self.nominal**2
@@ -300,7 +330,7 @@ def periodic_solution(
         arriving = np.roll(y[:, :, -1], 1, axis=1)[:, :, None]
         missing = (arriving + widths * (rate @ matrix.T) - y).astype(float)
         slopes = equation.slopes(floats[0], floats[1], list(y.astype(float)))
-        step = _newton_step(missing, slopes, floats[2], floats[3])
+        step = _newton_step(missing, slopes, floats[2], floats[3], equation.load.is_constant)
         if not np.isfinite(step).all():
             break
 
@@ -314,6 +344,8 @@ def periodic_solution(
         size = float((np.abs(step) / sizes).max())
         is_exact = size < (1e-30 if is_precise else 1e-14)
         if is_exact or (size < 1e-9 and size > size_before / 2):
+            if equation.load.is_constant:
+                y = equation.leveled(energy, y, widths / widths.sum() * matrix[-1])
             arriving = np.roll(y[:, :, -1], 1, axis=1)[:, :, None]
             y = np.concatenate((arriving, y), axis=2)
             return Mesh(edges, y, energy, _too_long(y.astype(float), nodes))
@@ -322,9 +354,16 @@ def periodic_solution(
 
 
 def _newton_step(
-    missing: Array, slopes: list[list[Precise]], lengths: Array, matrix: Array
+    missing: Array,
+    slopes: list[list[Precise]],
+    lengths: Array,
+    matrix: Array,
+    is_level_free: bool,
 ) -> Array:
-    """Return the corrections (unknowns, elements, s) that a linear equation needs, periodic over all elements."""
+    """Return the corrections (unknowns, elements, s) that a linear equation needs, periodic over all elements.
+
+    is_level_free: whether the level of the speed is not determined; the correction then leaves it nearly as it is.
+    """
     unknowns, elements, count = missing.shape
     system = np.zeros((elements, unknowns, count, unknowns, count))
     for row in range(unknowns):
@@ -349,7 +388,11 @@ def _newton_step(
     for last in solved[:, :, -1]:
         offset = last[:, 0] + last[:, 1:] @ offset
         passed = last[:, 1:] @ passed
-    entering = np.linalg.solve(np.eye(unknowns) - passed, offset)
+    change = np.eye(unknowns) - passed
+    if is_level_free:
+        entering = np.linalg.lstsq(change, offset, rcond=1e-9)[0]
+    else:
+        entering = np.linalg.solve(change, offset)
     steps = np.empty((elements, unknowns, count))
     for number, element in enumerate(solved):
         steps[number] = element[:, :, 0] + element[:, :, 1:] @ entering

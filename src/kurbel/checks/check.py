@@ -76,7 +76,7 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     # the sections: of each cylinder, and of the machine
     topics = [Topic("Machine", tuple(_machine_entries(machine)))]
     for number, cylinder in enumerate(machine.cylinders):
-        entries = tuple(_cylinder_entries(machine, number, notes))
+        entries = (*_cylinder_entries(machine, number, notes), *_valve_entries(case, number))
         topics.append(Topic(cylinder.name, entries, cylinder=True))
     notes_of_machine = [note.text for note in notes if note.cylinder is None]
     warnings = [CheckEntry("note", text, "warning") for text in notes_of_machine]
@@ -165,6 +165,22 @@ def _cylinder_entries(machine: Machine, number: int, notes: Sequence[Note]) -> I
             yield CheckEntry("note", note.text, "warning", path)
     for text in mechanism.notes:
         yield CheckEntry("note", text, "info", path)
+
+
+def _valve_entries(case: Case, number: int) -> Iterator[CheckEntry]:
+    """Yield the events of the slide valve of a cylinder, for each end with fractions of the stroke and crank angles."""
+    gear = case.cylinders[number].valve_gear
+    if gear is None:
+        return
+    for end, events in gear.events_of_ends():
+        texts = []
+        for name, (fraction, degrees) in events.items():
+            percent = f"{100 * fraction:.1f}".rstrip("0").rstrip(".")
+            position = f"at {percent} %"
+            if name in ("admission", "compression"):  # on the stroke back
+                position = f"{percent} % before the dead centre"
+            texts.append(f"{name} {position} ({degrees:.1f} deg)")
+        yield CheckEntry("valve", f"{end}: {', '.join(texts)}")
 
 
 def _stages(stages: dict[str, str], path: Path = ()) -> Iterator[CheckEntry]:

@@ -51,6 +51,9 @@ _OTHER_NAMES = {
     **dict.fromkeys(("crank-rocker", "four-bar-linkage", "4-bar"), "four-bar"),
     **dict.fromkeys(("crank-slider", "crosshead", "trunk-piston"), "slider-crank"),
     "parallelogram": "parallel-crank",
+    **dict.fromkeys(
+        ("wobbler", "trunnion-engine", "oscillating-engine", "oscillating"), "oscillating-cylinder"
+    ),
 }
 """Common name of a mechanism -> the word of the machine file."""
 
@@ -267,7 +270,7 @@ def crank_lag(cylinder: Cylinder, first: Cylinder) -> float:
 
 def pin_lag(cylinder: Cylinder, first: Cylinder) -> float:
     """Return ζ = δ − γ in degrees, by which the crank pin of a cylinder lags that of the first on the shaft."""
-    return crank_lag(cylinder, first) - cylinder.bank_angle
+    return crank_lag(cylinder, first) - (cylinder.bank_angle - first.bank_angle)
 
 
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
@@ -303,10 +306,25 @@ def may_lock(cylinder: Cylinder) -> Truth:
     return locking & (coefficient > 0)
 
 
+def with_article(kind: str) -> str:
+    """Return the word of a mechanism with its article.
+
+    >>> with_article("oscillating-cylinder")
+    'an oscillating-cylinder'
+    """
+    return f"an {kind}" if kind[0] in "aeiou" else f"a {kind}"
+
+
 def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
     kind, moment = cylinder.mechanism.name, cylinder.moment
+    if cylinder.mechanism.swings_cylinder:
+        message = "the cylinder swings with its piston; kurbel takes no masses there"
+        yield Rule("masses", cylinder.masses is not None, message)
+        yield Rule("inclination", cylinder.inclination is not None, message)
     if cylinder.mechanism.slides:
-        to_and_fro = f"a {kind} moves its output to and fro; give 'ram_force', a force, instead"
+        to_and_fro = (
+            f"{with_article(kind)} moves its output to and fro; give 'ram_force', a force, instead"
+        )
         yield Rule("moment", moment is not None, to_and_fro)
         return
     given = {"bore": cylinder.pistons or None, **{key: vars(cylinder)[key] for key in _SLIDING}}
@@ -331,7 +349,8 @@ _INSTEAD = {
 def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
     """A crosshead needs a side force and a guide, rings a bore, pins a rod; a yoke must not lock."""
     mechanism, pistons, rings = cylinder.mechanism, cylinder.pistons, friction.rings
-    kind, has_rod = mechanism.name, mechanism.has_rod
+    kind = with_article(mechanism.name)
+    has_rod = mechanism.has_rod
     yield Rule(
         "rings",
         rings is not None and not pistons,
@@ -342,13 +361,13 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
     yield Rule(("rings", "pressure"), without, "the gas presses on no ring without an 'indicator'")
     reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
     unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
-    yield Rule("crosshead", unguided, f"a {kind} has no {reason}; leave 'crosshead' out")
+    yield Rule("crosshead", unguided, f"{kind} has no {reason}; leave 'crosshead' out")
     for key in friction.of_pins:
         without = not has_rod and (key == "crosshead_pin" or not mechanism.rubs)
-        yield Rule(key, without, f"a {kind} has no connecting rod; leave '{key}' out")
+        yield Rule(key, without, f"{kind} has no connecting rod; leave '{key}' out")
     for key, given in (("block", friction.block), ("guides", friction.guides)):
         without = given is not None and not mechanism.rubs
-        yield Rule(key, without, f"a {kind} is no scotch-yoke; leave '{key}' out")
+        yield Rule(key, without, f"{kind} is no scotch-yoke; leave '{key}' out")
     if mechanism.rubs and friction.guides is not None:
         apart = mechanism.guide_distance
         yield Rule("guides", apart is None, "'guides' needs their distance; give 'guide_length'")
@@ -374,7 +393,8 @@ def _of_events(cylinder: Cylinder) -> Iterator[Rule]:
 
 def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:
     """The mass of a rod needs a rod, and its centre of gravity lies on it."""
-    message = f"a {mechanism.name} has no connecting rod; give the reciprocating mass as 'other'"
+    kind = with_article(mechanism.name)
+    message = f"{kind} has no connecting rod; give the reciprocating mass as 'other'"
     yield Rule((), not mechanism.has_rod, message)
     if mechanism.has_rod and rod.center_of_gravity is not None:
         length = mechanism.rod_length

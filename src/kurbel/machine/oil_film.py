@@ -35,8 +35,15 @@ _ELSEWHERE = {
 """Key -> keys of the diameter in `friction` and in `crankshaft`, and of the length in both; '' for none."""
 
 
+_WARM = "give the 'viscosity' at that temperature, such as '20 mPa s', which oils of ISO VG 100 have at about 75 °C"
+_NO_KEYS = dict.fromkeys(("temperature", "oil_temperature", "grade", "oil"), _WARM)
+"""Words that people try -> what to write instead."""
+
+
 class FilmBearing(Record):
     """The bearing of a pin or of all journals; lengths in m, viscosity in Pa s."""
+
+    UNWRITTEN = _NO_KEYS
 
     clearance: float = field(
         "length",
@@ -90,6 +97,8 @@ class FilmBearing(Record):
 
 class OilFilms(Record):
     """What oil there is between pins and shells; a pin or bearing that is not named has no film."""
+
+    UNWRITTEN = _NO_KEYS
 
     viscosity: float | None = field(
         "viscosity",

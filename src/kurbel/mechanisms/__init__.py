@@ -202,6 +202,8 @@ class Mechanism(Record, ABC):
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = ()
     rubs: ClassVar[bool] = False
     """Whether a block on the crank pin and two guides may rub, as those of a Scotch yoke."""
+    swings_cylinder: ClassVar[bool] = False
+    """Whether the cylinder swings with its piston, so that neither masses nor weight are known from the piston."""
     guided: ClassVar[bool] = True
     """Whether the side force N rests on a guide; otherwise it bends the piston rod."""
     is_crank_drive: ClassVar[bool] = False
@@ -272,6 +274,10 @@ class Mechanism(Record, ABC):
     @abstractmethod
     def dead_centres(self) -> tuple[float, float]:
         """Return inner and outer dead centre in degrees; the outstroke runs from the first to the second."""
+
+    def swing_ends(self) -> tuple[float, float]:
+        """Return the crank angles in degrees at which a swinging member turns back; here the dead centres."""
+        return self.dead_centres()
 
     def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return the crank angles in degrees where q − start (n,), from 0 to the stroke, is passed on that stroke.
@@ -398,11 +404,10 @@ SWING_OFFERS = (_swing(0), _swing(1), _swing(2))
 
 
 def _ends(mechanism: Any) -> list[Extreme]:
-    """θ in degrees at the dead centres; where the member turns fully, none."""
-    centres = mechanism.dead_centres() if mechanism.swing is not None else ()
+    """θ in degrees where the member turns back; where it turns fully, none."""
+    ends = mechanism.swing_ends() if mechanism.swing is not None else ()
     return [
-        Extreme(float(mechanism.swing_at(CrankAngle.of(end)).degrees), end % 360.0)
-        for end in centres
+        Extreme(float(mechanism.swing_at(CrankAngle.of(end)).degrees), end % 360.0) for end in ends
     ]
 
 
@@ -474,6 +479,12 @@ NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
 """What a mechanism with a block lacks without its pin, and why."""
 
 
+def pin_force(factor: ColumnFactor) -> Offer:
+    """Return the force on a crank pin that carries no connecting rod; factor: over P less friction."""
+    text = "Force of the sliding block or rod on the crank pin, positive in the direction of P"
+    return force_column("F_pin", "F_z", "force", text, factor, lambda state: state.along_rod)
+
+
 BLOCK_OFFERS = (
     motion_column(
         "c_block",
@@ -483,14 +494,7 @@ BLOCK_OFFERS = (
         lambda one, angle: one.block_slope(angle),
         omega=1,
     ),
-    force_column(
-        "F_pin",
-        "F_z",
-        "force",
-        "Force of the sliding block on the crank pin, positive in the direction of P",
-        lambda one, angle: one.pin_force_factor(angle),
-        lambda state: state.along_rod,
-    ),
+    pin_force(lambda mechanism, angle: mechanism.pin_force_factor(angle)),
 )
 """Of a mechanism with `block_slope`, the speed of the block over ω in m, and `pin_force_factor`, its force over P."""
 

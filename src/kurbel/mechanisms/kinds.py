@@ -8,6 +8,7 @@ from kurbel.mechanisms import Mechanism
 
 if TYPE_CHECKING:
     from kurbel.mechanisms.four_bar import FourBar
+    from kurbel.mechanisms.oscillating_cylinder import OscillatingCylinder
     from kurbel.mechanisms.parallel_crank import ParallelCrank
     from kurbel.mechanisms.scotch_yoke import ScotchYoke
     from kurbel.mechanisms.slider_crank import SliderCrank, YokeFrame
@@ -50,6 +51,12 @@ def _yoke_frame() -> "type[YokeFrame]":
     return YokeFrame
 
 
+def _oscillating_cylinder() -> "type[OscillatingCylinder]":
+    from kurbel.mechanisms.oscillating_cylinder import OscillatingCylinder
+
+    return OscillatingCylinder
+
+
 KINDS: dict[str, Callable[[], type[Mechanism]]] = {
     "slider-crank": _slider_crank,
     "scotch-yoke": _scotch_yoke,
@@ -57,6 +64,7 @@ KINDS: dict[str, Callable[[], type[Mechanism]]] = {
     "four-bar": _four_bar,
     "parallel-crank": _parallel_crank,
     "yoke-frame": _yoke_frame,
+    "oscillating-cylinder": _oscillating_cylinder,
 }
 """Word in the machine file -> door of the class."""
 MECHANISMS = {name: RecordForm(door) for name, door in KINDS.items()}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from kurbel.arrays import Number
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.cylinder import with_article
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.tables.tables import LeftOut
@@ -69,7 +70,7 @@ def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
         has_friction = cylinder.friction and cylinder.friction.block
         has_guide_force = mechanism.known_across and (is_pressed or has_friction)
         rod_forces = "S" if has_guide_force else "S, N"
-        stages[rod_forces] = f"a {mechanism.name} has no connecting rod"
+        stages[rod_forces] = f"{with_article(mechanism.name)} has no connecting rod"
     stages |= dict(mechanism.lacks)
 
     # work and power; of a ram without a piston nobody expects an indicator

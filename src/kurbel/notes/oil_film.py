@@ -37,7 +37,7 @@ def film_warnings(case: Case) -> Iterator[str]:
 def _of_equal_bearings(key: str, bearings: Sequence[Bearing], case: Case) -> Iterator[str]:
     thinnest = min(bearings, key=lambda bearing: bearing.film_thickness_min.value)
     assert thinnest.film
-    yield from _of_shape(thinnest.name, thinnest.film.shape)
+    yield from _of_shape(f"oil_film.{key}", thinnest.film.shape)
 
     # the results
     thickness = thinnest.film_thickness_min
@@ -61,19 +61,19 @@ def _of_equal_bearings(key: str, bearings: Sequence[Bearing], case: Case) -> Ite
         )
 
 
-def _of_shape(name: str, shape: FilmShape) -> Iterator[str]:
-    """Yield doubts on clearance and length of a bearing."""
+def _of_shape(key: str, shape: FilmShape) -> Iterator[str]:
+    """Yield doubts on clearance and length of the bearings with a key."""
     relative = 2 * shape.clearance / shape.diameter
     narrow, wide = _CLEARANCES
     if not narrow <= relative <= wide:
         yield (
-            f"{name}: a radial clearance of {show(shape.clearance, 'length', 3)} makes 2c/D = "
+            f"{key}: a radial clearance of {show(shape.clearance, 'length', 3)} makes 2c/D = "
             f"1/{1 / relative:.0f}; usual is about 1/1000 (MAHLE: 0.001 in per inch): is it the diametral one, or "
             "another unit?"
         )
     short, long = _SLENDER
     if not short <= shape.lam <= long:
         yield (
-            f"{name}: L/D = {shape.lam:.3g} of a land is not within 1/8 to 1.6, where oil films were "
+            f"{key}: L/D = {shape.lam:.3g} of a land is not within 1/8 to 1.6, where oil films were "
             "compared with Reynolds' equation"
         )

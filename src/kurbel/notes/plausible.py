@@ -20,7 +20,7 @@ _STEEL = 7850.0
 _ASK = "is its unit right?"
 
 
-class Figure(NamedTuple):
+class PlausibleFigure(NamedTuple):
     """A figure of a machine or cylinder, in SI; name: of the part that has it, '' where there is only one."""
 
     value: float
@@ -36,7 +36,7 @@ class Bounds(NamedTuple):
 
     text: str
     kind: str
-    figures: Callable[..., Iterator[Figure]]
+    figures: Callable[..., Iterator[PlausibleFigure]]
     least: float
     most: float
     sentence: str
@@ -51,19 +51,19 @@ class Bounds(NamedTuple):
             yield f"{name}{self.text} of {shown} {self.sentence}; {_ASK}"
 
 
-def _bores(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:
+def _bores(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
     for piston in cylinder.pistons:
-        yield Figure(piston.bore, piston.name)
+        yield PlausibleFigure(piston.bore, piston.name)
 
 
-def _moving_mass(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:
+def _moving_mass(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
     masses = cylinder.masses
     if masses:
         rod = masses.connecting_rod
-        yield Figure(masses.parts + (rod.mass if rod else 0.0))
+        yield PlausibleFigure(masses.parts + (rod.mass if rod else 0.0))
 
 
-def _mass_over_piston(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:
+def _mass_over_piston(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
     """Yield the reciprocating mass of a piston over that of a cube of steel as wide.
 
     Crossheads, and rods with several pistons, are far heavier than a small plunger: they are not compared.
@@ -71,46 +71,46 @@ def _mass_over_piston(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:
     masses = cylinder.masses
     if masses and masses.crosshead is None and len(cylinder.pistons) == 1:
         [piston] = cylinder.pistons
-        yield Figure(masses.parts / (_STEEL * piston.bore**3))
+        yield PlausibleFigure(masses.parts / (_STEEL * piston.bore**3))
 
 
-def _gyration_over_rod(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:
+def _gyration_over_rod(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
     """Yield the radius of gyration of an exact rod over its length."""
     rod = cylinder.masses.connecting_rod if cylinder.masses else None
     length = cylinder.mechanism.rod_length if cylinder.mechanism.has_rod else math.inf
     if rod and rod.inertia is not None and rod.mass > 0:
-        yield Figure(math.sqrt(rod.inertia / rod.mass) / length)
+        yield PlausibleFigure(math.sqrt(rod.inertia / rod.mass) / length)
 
 
-def _mean_piston_speed(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:
+def _mean_piston_speed(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
     if machine.speed is not None and cylinder.pistons:
-        yield Figure(2 * cylinder.mechanism.stroke * machine.speed)
+        yield PlausibleFigure(2 * cylinder.mechanism.stroke * machine.speed)
 
 
-def _clearances(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:
+def _clearances(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
             clearance = vars(chamber).get("clearance")
             if clearance is not None:
-                yield Figure(clearance, f"{piston.name}, {end.replace('_', ' ')}")
+                yield PlausibleFigure(clearance, f"{piston.name}, {end.replace('_', ' ')}")
 
 
-def _temperature_of(gas: Gas | None, name: str = "") -> Iterator[Figure]:
+def _temperature_of(gas: Gas | None, name: str = "") -> Iterator[PlausibleFigure]:
     if gas:
-        yield Figure(gas.inlet_temperature, name)
+        yield PlausibleFigure(gas.inlet_temperature, name)
 
 
-def _molar_mass_of(gas: Gas | None, name: str = "") -> Iterator[Figure]:
+def _molar_mass_of(gas: Gas | None, name: str = "") -> Iterator[PlausibleFigure]:
     if gas and gas.mass_of_mole is not None:
-        yield Figure(gas.mass_of_mole, name)
+        yield PlausibleFigure(gas.mass_of_mole, name)
 
 
-def _temperatures(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:
+def _temperatures(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
     for piston in cylinder.pistons:
         yield from _temperature_of(piston.gas, piston.name)
 
 
-def _molar_masses(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:
+def _molar_masses(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
     for piston in cylinder.pistons:
         yield from _molar_mass_of(piston.gas, piston.name)
 
@@ -160,13 +160,13 @@ OF_CYLINDERS = (
 """Figures of one cylinder."""
 
 
-def _speed(machine: Machine) -> Iterator[Figure]:
+def _speed(machine: Machine) -> Iterator[PlausibleFigure]:
     if machine.speed is not None:
-        yield Figure(machine.speed)
+        yield PlausibleFigure(machine.speed)
 
 
-def _ambient(machine: Machine) -> Iterator[Figure]:
-    yield Figure(machine.ambient)
+def _ambient(machine: Machine) -> Iterator[PlausibleFigure]:
+    yield PlausibleFigure(machine.ambient)
 
 
 OF_MACHINES = (

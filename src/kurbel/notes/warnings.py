@@ -21,7 +21,8 @@ from kurbel.machine.indicator import Card, CardLine, Chamber
 from kurbel.notes.machine_results import strength_warnings, turning_warnings
 from kurbel.notes.plausible import cylinder_doubts, machine_doubts
 from kurbel.solver.case import Case
-from kurbel.solver.forces import Brake, CylinderForces
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.piston_works import Brake
 from kurbel.tables.tables import grouped, together
 
 

@@ -385,12 +385,14 @@ class _System:
         m, k, count = lack.shape
         changes = np.empty((k, count, m, m + 1))
         at_once = max(1, _AT_ONCE // (m * k) ** 2)
+        minus_area = -self.rule.area[:, None, :, None]
         for first in range(0, count, at_once):
             chunk = np.s_[first : first + at_once]
             # (1 − half · area · ∂f/∂y) of every piece, over all its nodes and unknowns
-            slopes = stiffness[..., chunk].transpose(3, 0, 2, 1)[:, None]
-            products = self.rule.area[:, None, :, None] * slopes
-            systems = np.eye(m * k) - products.reshape(-1, m * k, m * k)
+            slopes = np.ascontiguousarray(stiffness[..., chunk].transpose(3, 0, 2, 1))
+            entries = (minus_area * slopes[:, None]).reshape(-1, (m * k) ** 2)
+            entries[:, :: m * k + 1] += 1.0
+            systems = entries.reshape(-1, m * k, m * k)
             # right sides: the lack, and a unit change of each unknown at the start
             sides = np.empty((len(systems), k, m, m + 1))
             sides[..., 0] = lack[..., chunk].transpose(2, 1, 0)

@@ -127,6 +127,8 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
 def _drawn_angle(trains: Sequence[Train]) -> float:
     """Return the angle in degrees from the horizontal to the stroke line of the first cylinder, as it is drawn."""
     first = trains[0]
+    if first.mechanism.swings_cylinder:
+        return 90.0
     if not first.is_engine:  # a ram, which moves across the line of the pivots, is level
         return 90.0 if first.sketch.output else 0.0
     if first.cylinder.inclination is not None:

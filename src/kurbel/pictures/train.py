@@ -94,7 +94,8 @@ class Train:
         self.weight = max(_WEIGHT * self.R, hub) if self.has_counterweight else hub
 
         # what kind of engine it is
-        self.is_engine = bool(self.mechanism.slides) and not self.mechanism.quick_return
+        is_linkage = self.mechanism.quick_return or self.mechanism.swings_cylinder
+        self.is_engine = bool(self.mechanism.slides) and not is_linkage
         self.has_slot = self.is_engine and bool(sketch.blocks)
         self.yoke = 0.0
         if self.has_slot:
@@ -332,7 +333,8 @@ def cranks(train: Train) -> Iterator[Body]:
     """Yield the bearings on the frame, and what turns on and on with its counterweight."""
     sketch, joints = train.sketch, train.joints
     if not train.is_engine:
-        turn = -1.0 if sketch.output else -1j
+        # a ram, and a cylinder that swings, are drawn on the page a right angle further on
+        turn = -1.0 if sketch.output or train.mechanism.swings_cylinder else -1j
         foot = train.journal * turn * np.array([-0.8j, 2.6 - 2.0j, 2.6 + 2.0j, 0.8j])
         for name in sketch.fixed:
             yield Body.of([_polygon("wall", *foot)], joints[name][0])
@@ -362,6 +364,7 @@ def _crank(train: Train, R: float) -> Iterator[Shape]:
 def members(train: Train) -> Iterator[Body]:
     """Yield the members between the joints, blocks that slide on them, and the pins in front of them."""
     pin, sketch, joints = train.pin, train.sketch, train.joints
+    swinging = _swinging(train) if train.mechanism.swings_cylinder else ()
     blocks = {link: joints[joint] for joint, link in sketch.blocks}
     for link in sketch.links[1:]:
         start, end = (joints[name] for name in link)
@@ -371,12 +374,37 @@ def members(train: Train) -> Iterator[Body]:
             yield _rod(pin, start, end)
     if sketch.output and not train.is_engine:
         yield from _ram(train)
+    yield from swinging
 
     # pins: of a yoke only that of the crank
-    no_pins = (SHAFT, sketch.output if train.forked else "")
+    no_pins = [SHAFT]
+    if train.forked:
+        no_pins.append(sketch.output)
+    if train.mechanism.swings_cylinder:
+        no_pins.append("piston")
     with_pins = [PIN] if train.has_slot else [name for name in joints if name not in no_pins]
     for name in with_pins:
         yield Body.of([disc("metal", 0.9 * pin), disc("web", 0.15 * pin)], joints[name])
+
+
+def _swinging(train: Train) -> Iterator[Body]:
+    """Yield a cylinder that swings about its trunnions, and the piston in it."""
+    R, joints = train.R, train.joints
+    pistons = train.cylinder.pistons
+    bore = pistons[0].bore if pistons else BORE * train.mechanism.stroke
+    half, wall, height = bore / 2, WALL * bore, _PLUNGER * bore
+    along = joints["trunnion"] - joints[PIN]
+    turn = _directions(along)
+    # the piston moves by a crank to both sides of the trunnions
+    head = R + height / 2 + _CLEARANCE * train.mechanism.stroke
+    foot = -R - height / 2
+    walls = [
+        *_both("wall", foot, head, half, half + wall),
+        box("wall", head, head + wall, half + wall),
+    ]
+    yield Body.of(walls, joints["trunnion"], turn)
+    piston = [box("metal", -height / 2, height / 2, half)]
+    yield Body.of(piston, joints["piston"], turn)
 
 
 def _is_hidden(train: Train, link: tuple[str, ...]) -> bool:

@@ -57,7 +57,8 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
     parts = report.all_parts
     blocks = _blocks(parts, look)
     parts_without_results = sum(bool(part.nowhere) for part in parts)
-    several = len(blocks) + parts_without_results > 1
+    # the totals of an only cylinder have ids of their own
+    several = len(blocks) + parts_without_results > 1 and not report.is_of_one_cylinder
     is_named = several or report.group in ("ratios", "scenes")
 
     heads = _heads(parts, blocks)

@@ -154,7 +154,10 @@ def part_name(report: Report, part: Part, look: Look) -> str:
     if part is not report.whole and report.group == "ratios":
         ratio = str(whole_if_integral(float(part.name))).replace("inf", "∞")
         return look.text(f"L/R = {look.number(ratio)}")
-    return look.text(str(part.name)) if len(report.all_parts) > 1 else ""
+    is_only_cylinder = report.is_of_one_cylinder and part is not report.whole
+    if is_only_cylinder or len(report.all_parts) < 2:
+        return ""
+    return look.text(str(part.name))
 
 
 def place_table(table: PlaceTable, look: Look) -> TextTable:

@@ -65,6 +65,13 @@ def _delivery_notes(case: Case) -> Iterator[str]:
     delivery = case.delivery
     if delivery.pump:
         yield "Flow is that of rigid pistons: each chamber delivers all that it displaces, less the slip."
+        for name, end in delivery.open_ends:
+            if end.pipe:
+                side = "head" if end.is_head else "crank"
+                yield (
+                    f"The {side} end of {name} has the pressure of the {end.pipe} pipe on both strokes: "
+                    "it is always open to it, and what it displaces comes from there and goes there."
+                )
         if delivery.pistons:
             yield "φ is the angle of crank 1 for the whole machine, of its own crank for each piston."
     if delivery.stages:
@@ -91,6 +98,11 @@ def delivery_left_out(delivery: MachineDelivery) -> Iterator[LeftOut]:
         pipes = machine.pump and (machine.pump.suction_pipe or machine.pump.delivery_pipe)
         no_pipes = "" if pipes else "no pipes given under pump"
         yield from missing({"flow": no_speed, "pipes, vessels, suction lift": no_pipes})
+        for name, end in delivery.open_ends:
+            if not end.pipe:
+                side = "head" if end.is_head else "crank"
+                reason = "one pressure on both strokes, which is that of neither pipe"
+                yield LeftOut(f"what the {side} end of {name} displaces", reason)
     if any(stage.suction is None for stage in delivery.stages):
         yield LeftOut(
             "capacity and the rest", "a drawn card or a trace does not say when valves open"

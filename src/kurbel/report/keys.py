@@ -60,7 +60,7 @@ class ListedKey(NamedTuple):
         return self.key.written.replace("`", "").replace("\t", "\\t")
 
 
-Places = dict[str, list[ListedKey]]
+KeyPlaces = dict[str, list[ListedKey]]
 """Keys by their dotted paths."""
 
 
@@ -68,19 +68,19 @@ def _is_any(word: str) -> bool:
     return True
 
 
-def every_place(is_wanted: Callable[[str], bool] = _is_any) -> Places:
+def every_place(is_wanted: Callable[[str], bool] = _is_any) -> KeyPlaces:
     """Return every key of a machine file by its dotted path, once for each mechanism that has it.
 
     Those of a cylinder are at the top. is_wanted: takes a key, or the word of a mechanism, and returns whether what is
     below it is listed, too.
     """
-    places: Places = {}
+    places: KeyPlaces = {}
     for listed in _of_record(RecordForm(Machine), "", is_wanted):
         places.setdefault(listed.path, []).append(listed)
     return places
 
 
-def places_of(texts: Iterable[tuple[str, str]]) -> Places:
+def places_of(texts: Iterable[tuple[str, str]]) -> KeyPlaces:
     """Return the keys that a file may have below those that it has; texts: the paths of its keys, and the values."""
     words = set[str]()
     for path, value in texts:
@@ -132,7 +132,7 @@ def _hint(name: str, listed_keys: Iterable[str]) -> str:
     return f"; did you mean {' or '.join(map(repr, similar))}?"
 
 
-def meaning(path: str, places: Places) -> str:
+def meaning(path: str, places: KeyPlaces) -> str:
     """Return what the key at the end of a path means, as the file has it; '' if it is not known."""
     steps = _steps(path)
     for above in range(len(steps)):

@@ -173,7 +173,7 @@ class Rows(NamedTuple):
         return Rows(*map(changed_rows, self))
 
 
-Door = Callable[[], "type[Results]"]
+ResultsDoor = Callable[[], "type[Results]"]
 """A function with one import inside, that of the class it returns."""
 
 
@@ -183,12 +183,12 @@ class PartResults(Computed[V]):
     def __init__(
         self,
         function: Of[V],
-        kind: type[Results] | Door,
+        kind: type[Results] | ResultsDoor,
         unless: ResultCondition | None,
         there: ResultCondition | None,
     ) -> None:
         super().__init__(function, Quantity("", "", "", function.__doc__ or ""))
-        self._door: Door = (lambda: kind) if isinstance(kind, type) else kind
+        self._door: ResultsDoor = (lambda: kind) if isinstance(kind, type) else kind
         self.unless, self.there = unless, there
 
     @cached_property
@@ -212,7 +212,7 @@ class PartResults(Computed[V]):
 
 
 def part(
-    kind: type[Results] | Door,
+    kind: type[Results] | ResultsDoor,
     unless: ResultCondition | None = None,
     there: ResultCondition | None = None,
 ) -> Callable[[Of[V]], PartResults[V]]:
@@ -326,8 +326,8 @@ class Results(NotebookView):
         names: ids or printed symbols. Raises UsageError for angles that are no numbers and for what is no column here.
         """
         angles = np.atleast_1d(crank_angles(degrees))
-        state, every = self.at(angles), self.rows.columns
-        known = {id: row for id, row in every.items() if self.command in row.quantity.commands}
+        state = self.at(angles)
+        known = self._own_columns
         rows = [_only(name, known, "column") for name in names] if names else known.values()
         found: dict[str, Array] = {"phi": angles}
         for row in rows:
@@ -337,6 +337,12 @@ class Results(NotebookView):
             elif names:
                 raise UsageError(f"this machine has no {row.quantity.id}: {row.quantity.text}")
         return found
+
+    @cached_property
+    def _own_columns(self) -> dict[str, QuantityRow]:
+        """The rows of the columns of this command, by id."""
+        columns = self.rows.columns
+        return {id: row for id, row in columns.items() if self.command in row.quantity.commands}
 
     def at(self, degrees: object, within: Array | None = None) -> Any:
         """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
@@ -451,7 +457,9 @@ def crank_angles(degrees: object) -> Array:
 
 
 def _only(name: str, known: Mapping[str, QuantityRow], what: str) -> QuantityRow:
-    """Return the one row that a name means; raises UsageError for none and for several."""
+    """Return the one row that a name means, its id first; raises UsageError for none and for several."""
+    if name in known:
+        return known[name]
     found = called(name, (row.quantity for row in known.values()))
     if len(found) != 1:
         raise UsageError(

@@ -4,11 +4,11 @@ import math
 
 from kurbel.machine.ideal_cards import Compressor, IdealCard, Otto, Steam, after_polytrope
 
-Line = tuple[int, float, float, float, float, float]
+IdealLine = tuple[int, float, float, float, float, float]
 """One of the lines of a `kurbel.solver.gas.Process`."""
 
 
-def ideal_lines(card: IdealCard, lift: float, four_stroke: bool) -> tuple[float, list[Line]]:
+def ideal_lines(card: IdealCard, lift: float, four_stroke: bool) -> tuple[float, list[IdealLine]]:
     """Return what makes its pressures absolute, in Pa, and the lines of an ideal card; see `_lines`."""
     lines = _lines(card, lift, four_stroke)
     if (
@@ -23,12 +23,12 @@ def ideal_lines(card: IdealCard, lift: float, four_stroke: bool) -> tuple[float,
     return lift, lines
 
 
-def _lines(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
+def _lines(card: IdealCard, lift: float, four_stroke: bool) -> list[IdealLine]:
     """Return the lines of an ideal card; those of an engine with exhaust and intake in four strokes.
 
     lift: pressure in Pa to be added for absolute pressures.
     """
-    clearance, lines = card.clearance, list[Line]()
+    clearance, lines = card.clearance, list[IdealLine]()
 
     def run(stroke: int, z: float, p: float, next_z: float, exponent: float = 0.0) -> float:
         """Draw a line of constant pressure, or along p V^n = const, and return the pressure at its end."""

@@ -383,9 +383,10 @@ class CylinderThrow(NamedTuple):
         return Weight(mass * self.arm, 1, self.place, self.number)
 
 
-def throws_with_masses(machine: Machine, first: Number = 0.0) -> list[CylinderThrow]:
-    """Return the throws of all cylinders of a machine; first: stroke line from which their directions count."""
+def throws_with_masses(machine: Machine) -> list[CylinderThrow]:
+    """Return the throws of all cylinders of a machine; directions count from the stroke line of cylinder 1."""
     throws = []
+    first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
     for number, cylinder in enumerate(machine.cylinders):
         masses, length = cylinder.masses, cylinder.mechanism.rod_length
         bank = cylinder.bank_angle - first

@@ -314,12 +314,13 @@ class State(Chambers):
         bearings: Number = np.hypot(*pin)
         if friction.line is not None and some(friction.journals != 0):
             names = [cylinder.name for cylinder in drive.machine.cylinders]
-            throw = friction.line.throw_of(names.index(drive.name))
+            cylinder = names.index(drive.name)
+            throw = friction.line.throw_of(cylinder)
             count = len(throw.cylinders)
-            # as though all rods on the pin loaded it alike, in its middle
-            reactions = friction.line.reactions(
-                throw, [pin.complex * count], drive.cylinder, self.angle
-            )
+            # as though all rods on the pin loaded it alike, in the place of this one
+            rods = [0 * pin.complex for _ in throw.cylinders]
+            rods[throw.cylinders.index(cylinder)] = count * pin.complex
+            reactions = friction.line.reactions(throw, rods, drive.cylinder, self.angle)
             bearings = sum(np.abs(force) for force in reactions) / count
         at_crosshead: Number = 0.0
         if self.rod_angle is not None:  # the rod turns by −dψ, which friction opposes

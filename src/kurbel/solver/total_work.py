@@ -54,7 +54,7 @@ class TotalWork(Results):
         "Work lost by friction in all cylinders per cycle",
         lambda machine_work: machine_work.friction_work,
         plain="A_f,sum",
-        commands=("forces",),
+        commands=_PRINTED,
         repeats=lambda machine_work: machine_work.is_of_one_cylinder,
     )
     power_friction = value(
@@ -63,7 +63,7 @@ class TotalWork(Results):
         "Power lost by friction in all cylinders",
         lambda machine_work: machine_work.per_second(machine_work.friction_work),
         plain="N_f,sum",
-        commands=("forces",),
+        commands=_PRINTED,
         repeats=lambda machine_work: machine_work.is_of_one_cylinder,
     )
     mechanical_efficiency = value(

@@ -22,6 +22,7 @@ from kurbel.solver.motion import Motion
 
 _ENDS = {"head": ("H", "head end"), "crank": ("C", "crank end")}
 """End of the cylinder -> index of its symbols, and its name."""
+_EVENTS = ("admission", "cut_off", "release", "compression")
 _MOTION = ("motion",)
 _FAST = 60.0  # m/s at any moment, from which on inlets throttle: Die Kolbendampfmaschinen, p. 141
 
@@ -121,6 +122,12 @@ class ValveGear(Results):
                 answers[f"steam_speed_{name}"] = times * self.motion.c_m
                 answers[f"steam_speed_max_{name}"] = times * self.motion.c_max.value
         return answers
+
+    def events_of_ends(self) -> Iterator[tuple[str, dict[str, Extreme]]]:
+        """Yield the name of each end with its events, in the order of a turn; of a single machine."""
+        for name, (_, end) in _ENDS.items():
+            events = {event.replace("_", "-"): self.answers[f"{event}_{name}"] for event in _EVENTS}
+            yield end, events
 
     @property
     def notes(self) -> Iterator[str]:

@@ -19,7 +19,7 @@ from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, called, in_sentences
 from kurbel.solver.case import Case
 from kurbel.solver.figures import AtAngles, Results
-from kurbel.tables.named_values import Choice, choices_in
+from kurbel.tables.named_values import ChosenValue, choices_in
 from kurbel.tables.shown import EVERYWHERE, ROUNDING, Places, shown_columns, shown_key_values
 from kurbel.tables.tables import (
     BEFORE,
@@ -52,7 +52,7 @@ class Subject(NamedTuple):
     whose rod has several; whole: it is the whole machine; idle: why its table would have no results, so that people
     get a sentence instead. The rest is computed only for a report, and once: left_out, warnings, tables. part: its name
     in columns where `name` is a number that may mean another part of another machine; where: what it is next to, which
-    distinguishes parts of one number.
+    distinguishes parts of one number; columns_alone: its key values are left out, as they count by another angle.
     """
 
     name: str
@@ -67,6 +67,7 @@ class Subject(NamedTuple):
     idle: str = ""
     part: str = ""
     where: str = ""
+    columns_alone: bool = False
 
     @property
     def identity(self) -> str:
@@ -94,7 +95,7 @@ class Subject(NamedTuple):
         row = self.results.rows.key_values.get(quantity.id) if self.results else None
         return row and row.of(self.results)
 
-    def named(self, choices: Iterable[Choice]) -> Iterator[tuple[Quantity, object]]:
+    def named(self, choices: Iterable[ChosenValue]) -> Iterator[tuple[Quantity, object]]:
         """Yield the chosen ones of its key values in SI, in their order, with no heading."""
         rows = self.results.rows.key_values if self.results else {}
         for choice in choices:
@@ -105,7 +106,7 @@ class Subject(NamedTuple):
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, object]]:
         """Yield its key values of a command in SI, without those that are printed only on request."""
-        if not self.results:
+        if not self.results or self.columns_alone:
             return
         for quantity, of, unless, _ in self.results.rows.key_values.values():
             is_printed = command in quantity.commands and command not in quantity.on_request
@@ -288,7 +289,7 @@ def _report_on_names(
     named_pistons = [piston for piston in pistons if piston.name in scopes]
 
     parts, whole = list[Part](), None
-    printed = set[Choice]()
+    printed = set[ChosenValue]()
     for subject in (*subjects, *named_pistons):
         chosen = list(subject.named(choices))
         if not chosen:
@@ -317,7 +318,7 @@ def _report_on_names(
     )
 
 
-def _lacking(choice: Choice, command: str) -> str:
+def _lacking(choice: ChosenValue, command: str) -> str:
     """Return the message for a key value that a machine, or a part of it, does not have."""
     quantity = every_quantity().key_values(command)[choice.id]
     owner = {"": "this machine", MACHINE: "the whole machine"}.get(choice.scope, choice.scope)

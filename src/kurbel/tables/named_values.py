@@ -31,7 +31,7 @@ class Owner(Protocol):
         """Whether it is the whole machine."""
 
 
-class Choice(NamedTuple):
+class ChosenValue(NamedTuple):
     """A key value chosen by name; scope: of what, '' for everything that has it."""
 
     scope: str
@@ -68,7 +68,7 @@ def split_names(
         first = last + 1
 
 
-def choices_in(text: str, command: str, owners: Sequence[Owner]) -> list[Choice]:
+def choices_in(text: str, command: str, owners: Sequence[Owner]) -> list[ChosenValue]:
     """Return the key values of a command that a text names, in its order, each once.
 
     owners: what the command has results of; without any a name has no scope. Raises UsageError for a name that is none,
@@ -105,7 +105,7 @@ def _scopes(owners: Iterable[Owner]) -> list[str]:
 
 def _choice(
     name: str, command: str, declared: Mapping[str, Quantity], scopes: Sequence[str]
-) -> Choice:
+) -> ChosenValue:
     """Return the key value that a name means; raises UsageError where it means none, or several."""
     scope, id = "", name
     if not called(name, declared.values()) and "." in name:
@@ -125,7 +125,7 @@ def _choice(
             f"--key-values: {text_in_one_line(name)}: kurbel {command} has no "
             f"'{text_in_one_line(scope)}'{near} (it has {', '.join(scopes)})"
         )
-    return Choice(scope, ids[0])
+    return ChosenValue(scope, ids[0])
 
 
 def _unknown(name: str, id: str, command: str, declared: Mapping[str, Quantity]) -> str:

@@ -155,6 +155,11 @@ class Report(NamedTuple):
             table for part in self.all_parts for table in part.place_tables if not table.in_note
         )
 
+    @property
+    def is_of_one_cylinder(self) -> bool:
+        """Whether it has the forces of an only cylinder, and of the whole machine the totals of its pistons."""
+        return self.command == "forces" and len(self.cylinders) == len(self.parts) == 1
+
     def of_cylinder(self, name: str) -> "Report":
         """Return the results of one part, or of all parts of a cylinder, given by name or number.
 
@@ -262,7 +267,7 @@ def notes_for_people(report: Report) -> tuple[str, ...]:
 
 
 _NUMBERED = re.compile(r"(.*\D)(\d{1,9})$")
-Item = TypeVar("Item")
+Grouped = TypeVar("Grouped")
 
 
 def together(names: Sequence[str]) -> str:
@@ -300,9 +305,9 @@ def _numbers_in_runs(names: Iterable[str]) -> str:
     return ", ".join(texts)
 
 
-def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
+def grouped(items: Iterable[Grouped], key: Callable[[Grouped], Hashable]) -> list[list[Grouped]]:
     """Return the items in groups of equal key, in order of first occurrence."""
-    groups: dict[Hashable, list[Item]] = {}
+    groups: dict[Hashable, list[Grouped]] = {}
     for item in items:
         groups.setdefault(key(item), []).append(item)
     return list(groups.values())
@@ -390,8 +395,7 @@ def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) 
     """
     left_out = _left_out_in_short(report.all_parts)
     report = shown_once(report)
-    if ids and report.whole and report.command == "forces" and len(report.cylinders) == 1:
-        # the totals of the only cylinder are near to its own
+    if ids and report.is_of_one_cylinder:
         report = report._replace(whole=None)
     order = {id: number for number, id in enumerate(ids)}
     of_whole = report.whole is not None and bool(report.whole.place_tables)

@@ -174,9 +174,17 @@ def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
     waves = curve.waves[:, 0]
     present = np.flatnonzero(waves)
     vectors = np.zeros(degrees.shape, complex)
+    offsets: Array = np.empty(0)
+    within_block = np.empty(0, complex)
     for begin in range(0, len(present), _AT_ONCE):
         block = present[begin : begin + _AT_ONCE]
-        turned = waves[block, None] * unit_vector(np.multiply.outer(curve.numbers[block], degrees))
+        # e^{inφ} = e^{iaφ} e^{i(n − a)φ}: the second factor is that of the block before; of few waves a = 0
+        first = curve.numbers[block[0]] if len(present) > _AT_ONCE else 0
+        apart = curve.numbers[block] - first
+        if not np.array_equal(apart, offsets):
+            offsets = apart
+            within_block = unit_vector(np.multiply.outer(offsets, degrees))
+        turned = waves[block, None] * (unit_vector(first * degrees) * within_block)
         # one after another, so that the sum at an angle does not depend on the others
         for wave in turned:
             vectors += wave
@@ -406,9 +414,8 @@ class MachineBalance(Results):
         self._cylinders = effort.cylinders
         self._turning = effort
         self._compare = compare
-        first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
         # counterweights turn with their throw, whether or not its cylinder has masses
-        cranks = throws_with_masses(machine, first)
+        cranks = throws_with_masses(machine)
         with_masses = [throw for throw in cranks if throw.cylinder.masses]
         self.counterweights = tuple(counterweights_of(machine, cranks)) if cranks else ()
         moving = any(some(throw.mass != 0) or some(throw.rotating != 0) for throw in with_masses)

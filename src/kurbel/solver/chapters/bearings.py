@@ -90,7 +90,6 @@ class BearingColumns(AtAngles):
         "Direction of the load from *",
         of=lambda columns, frame: columns.direction(frame),
     )
-
     eccentricity = value(
         "e_r",
         "ratio",
@@ -138,11 +137,11 @@ class BearingColumns(AtAngles):
 class Bearing(Results):
     """A pin or a main bearing at the angles of crank 1. Attributes are named by the ids of the key values, in SI.
 
-    name: as it is printed; key: in `oil_film`; cylinders: those that load it; size: diameter and length in m, None where they are not
-    given; journal, shell: the frames in which its two surfaces are at rest; contact: where they touch, in degrees from
-    the direction of the load: a load to the right presses the left side of a crank pin (180°), but the right side of
-    the shell of a main bearing (0°); of_rod: whether a rod turns on it. Of many machines all key values are arrays
-    (machines,).
+    name: as it is printed; key: of its entry in `oil_film`, which is `oil`; cylinders: those that load it; size:
+    diameter and length in m, None where they are not given; journal, shell: the frames in which its two surfaces are at
+    rest; contact: where they touch, in degrees from the direction of the load: a load to the right presses the left
+    side of a crank pin (180°), but the right side of the shell of a main bearing (0°); of_rod: whether a rod turns on
+    it. Of many machines all key values are arrays (machines,).
     """
 
     command = "bearings"
@@ -170,21 +169,6 @@ class Bearing(Results):
     work_rubbing = value(
         "A_f,L", "energy", "Friction work per cycle", lambda bearing: bearing.friction_work()
     )
-
-    @part(_oil_film, there=lambda bearing: bearing.oil is not None)
-    def film(self) -> OilFilm | None:
-        """Its oil film; None where it has none, or something that it needs is not given."""
-        films, omega = self.machine.oil_film, self.omega
-        diameter, length = self.size
-        if films is None or self.oil is None or self._film_lacks:
-            return None
-        if omega is None or diameter is None or length is None:
-            return None
-        shape = _oil_film().shape_of(films, self.key, diameter, length)
-        pieces, _, loads = self._cycle
-        turning = pieces.carried(self._turning(), self._common)
-        pressed = self._pressing(loads[1])
-        return _oil_film()(shape, pieces, pressed, turning, omega, self.count)
 
     def __init__(
         self,
@@ -237,13 +221,27 @@ class Bearing(Results):
         film = self.film.at_angles(phi, pressed) if self.film else None
         return BearingColumns(phi, frames, largest, film)
 
+    # its oil film
+
     def _pressing(self, load: ComplexArray) -> ComplexArray:
         """Return a load seen from the shell, turned to where it presses pin and shell together."""
         return load * math.cos(math.radians(self.contact))
 
-    @cached_property
+    @part(_oil_film, there=lambda bearing: bearing.oil is not None)
+    def film(self) -> OilFilm | None:
+        """Its oil film; None where it has none, or something that it needs is not given."""
+        films = self.machine.oil_film
+        if films is None or self.oil is None or self._film_lacks:
+            return None
+        shape = _oil_film().shape_of(films, self.key, *self.size)
+        pieces, _, loads = self._cycle
+        turning = pieces.carried(self._turning(), self._common)
+        pressed = self._pressing(loads[1])
+        return _oil_film()(shape, pieces, pressed, turning, self.omega, self.count)
+
+    @property
     def _film_lacks(self) -> str:
-        """Why there is no oil film, as far as that does not depend on its orbit, or an empty text."""
+        """What an oil film needs and is not given, or an empty text."""
         if self.omega is None:
             return "no speed given"
         if self.count is None and self.omega == 0:
@@ -254,9 +252,9 @@ class Bearing(Results):
     @property
     def film_obstacle(self) -> str:
         """Why the only machine has no film in a bearing that `oil_film` describes, or an empty text."""
-        if self.film is None or self.film.repeats_itself:
-            return self._film_lacks
-        return "the load turns with the oil or never leaves its side; no film repeats"
+        if self.oil is None:
+            return ""
+        return self.film.obstacle if self.film else self._film_lacks
 
     @cached_property
     def _cycle(self) -> tuple[Pieces, Array, ComplexArray]:
@@ -316,7 +314,11 @@ class RodPin(Bearing):
     def __init__(self, name: str, own: CylinderForces, size: Size, pin: str) -> None:
         surfaces = ("throw" if pin == "crank_pin" else "engine", "rod")
         super().__init__(name, pin, (own,), size, surfaces)
-        self._own, self._pin, self._bank = own, pin, unit_vector(own.drive.cylinder.bank_angle)
+        self._own = own
+        self._pin = pin
+        # its stroke line, from that of cylinder 1
+        first = own.drive.machine.cylinders[0]
+        self._bank = unit_vector(own.drive.cylinder.bank_angle - first.bank_angle)
 
     def _seen(self, state: State, bank: Any) -> Frames:
         """Return the load in each frame; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""

@@ -2,6 +2,7 @@
 
     q(φ) = (1 − slip) Σ A |dx/dt|            over the chambers that shrink; where they grow it is drawn in
     ΔV = swing of ∫ (q − q_m) dt             the fluctuating volume, found as ΔE of the turning effort is
+    q = … ± A dx/dt                          also of a chamber that is always open to the pipe: differential pumps
     V = ΔV (r + 1)/(2 (r − 1))               air vessel; r = V_max/V_min = ((2 + δ)/(2 − δ))^(1/n), V = ΔV/δ for n = 1
     h_a = l/(g a) dq/dt, h_f = f l u²/(2 g d)    heads in a pipe of the section a, u = q/a; behind a vessel q is q_m
     η_v = 1 − ε₀ [(p_d/p_s)^(1/n) − 1]       end of a compressor with the clearance ε₀
@@ -17,9 +18,9 @@ where the valves change.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
-from functools import cache, cached_property, partial
+from functools import cache, cached_property, partial, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,7 +35,7 @@ from kurbel.machine.indicator import Card, Chamber, Rectangle
 from kurbel.machine.pumped import Gas, Pipe, Pump, Vessel
 from kurbel.numerics.arithmetic import every, some, total, unless_cancelled, where
 from kurbel.numerics.extreme import Extremes
-from kurbel.numerics.pieces import Pieces
+from kurbel.numerics.pieces import Pieces, resolved
 from kurbel.quantity import ValuesById, value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort, position
@@ -97,13 +98,85 @@ def _alike(condition: Truth) -> bool:
 
 def _is_level(chamber: Chamber | None) -> bool:
     """Return whether a chamber has one pressure on each stroke, as a pump's has."""
+    return _levels(chamber) is not None
+
+
+def _levels(chamber: Chamber | None) -> list[Number] | None:
+    """Return the pressures in Pa that a chamber has, each on a whole stroke; of the ambient none; else None."""
+    if isinstance(chamber, Rectangle):
+        if some(chamber.mean != 0):
+            return None
+        return [] if chamber.level is None else [chamber.level]
     if not isinstance(chamber, Card):
-        return isinstance(chamber, Rectangle) and not some(chamber.mean != 0)
+        return None
+    levels = list[Number]()
     for line in chamber.lines:
         first = line.pressures[0]
         if not all(np.array_equal(pressure, first) for pressure in line.pressures):
-            return False
-    return True
+            return None
+        levels.append(first)
+    return levels
+
+
+# chambers that are always open to a pipe
+
+
+class OpenEnd(NamedTuple):
+    """An end with one pressure on both strokes; that of a pipe, to which it is then always open.
+
+    number: of its piston in the cylinder; turned: whether that moves against the crosshead; pipe: delivery, suction,
+    or '' where it has the pressure of neither.
+    """
+
+    number: int
+    is_head: bool
+    turned: bool
+    pipe: str
+
+
+def _open_ends(drive: Drive, pipes: Mapping[str, Sequence[Number]]) -> Iterator[OpenEnd]:
+    """Yield the ends of pistons that do not drive which have one pressure on both strokes, but not the ambient one.
+
+    pipes: the absolute pressures in Pa in the delivery and in the suction pipes.
+    """
+    for gas in drive.gas:
+        if _alike(gas.work > 0):
+            continue
+        for end in ("head_end", "crank_end"):
+            levels = _absolute_levels(gas, end, drive.machine.ambient)
+            if not levels or not all(_are_equal(level, levels[0]) for level in levels):
+                continue
+            if _are_equal(levels[0], drive.machine.ambient):
+                continue
+            joined = ""
+            for pipe, pressures in pipes.items():
+                if any(_are_equal(levels[0], pressure) for pressure in pressures):
+                    joined = pipe
+            number = drive.cylinder.pistons.index(gas.piston)
+            yield OpenEnd(number, end == "head_end", gas.turned, joined)
+
+
+def _absolute_levels(gas: PistonGas, end: str, ambient: Number) -> list[Number]:
+    """Return the absolute pressures in Pa of an end that has one on each stroke; none of another end."""
+    lift = 0.0 if gas.absolute else ambient
+    return [level + lift for level in _levels(gas.piston.chambers.get(end)) or ()]
+
+
+def _are_equal(pressure: Number, other: Number) -> bool:
+    """Return whether two pressures in Pa are equal but for rounding, of all machines."""
+    difference = np.abs(np.subtract(pressure, other))
+    return _alike(difference <= _SAME_PRESSURE * np.maximum(np.abs(pressure), np.abs(other)))
+
+
+def _given_by(state: State, end: OpenEnd, is_derivative: bool) -> Array:
+    """Return dV/dφ in m³ of what an end that is always open gives to its pipe, or takes from it (negative)."""
+    dimensions = state.drive.cylinder.pistons[end.number]
+    area = dimensions.head_area if end.is_head else dimensions.crank_area
+    change = state.curvature if is_derivative else state.slope
+    # the head end grows on the outstroke, the crank end shrinks
+    shrinks_outward = end.is_head == end.turned
+    sense = 1.0 if shrinks_outward else -1.0
+    return sense * abs(dimensions.lever_ratio) * area * np.asarray(change)
 
 
 def _displaced(
@@ -284,7 +357,7 @@ class Delivery(Results):
             rate = self._rate(is_suction=is_suction)
             if pipe.vessel:
                 rate = self.pieces.of(self._mean(is_suction))
-            heads = self.pieces.of(_friction(pipe) / GRAVITY) * (rate * omega) ** 2
+            heads = self.pieces.of(_friction(pipe) / GRAVITY) * rate * np.abs(rate) * omega**2
             columns[f"{prefix}friction_head"] = self.pieces.filled(heads)
         return columns
 
@@ -293,9 +366,19 @@ class Delivery(Results):
         return self._result(self.pieces.mean(self._rate(is_suction=is_suction)))
 
     def _mean_cube(self, is_suction: bool = False) -> Number:
-        """Return the mean over the cycle of (dV/dφ)³."""
+        """Return the mean over the cycle of |dV/dφ|³."""
         rate = self._rate(is_suction=is_suction)
-        return self._result(self.pieces.mean(rate * rate * rate))  # ** 3 is slow
+        if not (rate < 0).any():
+            return self._result(self.pieces.mean(rate * rate * rate))  # ** 3 is slow
+        # where liquid flows back the pieces are cut
+        pieces, cubes, _ = resolved(
+            self.pieces,
+            rate[None],
+            rate[None],
+            self.pieces.largest(rate[None]),
+            lambda pieces, rates: np.abs(rates) ** 3,
+        )
+        return self._result(pieces.mean(cubes[0]))
 
     def _swing(self, is_suction: bool) -> Number:
         """Return the fluctuating volume in m³ of a flow, with all its crossings of the mean."""
@@ -584,6 +667,7 @@ class MachineDelivery:
         self._count = effort.count
         # the pistons that pump, and the ends of those that compress
         self._pumps = list[tuple[CylinderForces, DrivenPiston]]()
+        self._open = list[tuple[CylinderForces, OpenEnd]]()
         ends = list[CompressorEnd]()
         for forces in effort.cylinders:
             for piston in driven_pistons(forces.drive):
@@ -592,6 +676,11 @@ class MachineDelivery:
                 else:
                     ends += _compressor_ends(forces.drive, piston)
         self.stages: tuple[CompressorStage, ...] = _staged(ends)
+        pumping = [piston for _, piston in self._pumps]
+        pipes = _pressures_of_pipes(pumping, self.machine.ambient)
+        if self._pumps:
+            for forces in effort.cylinders:
+                self._open += [(forces, end) for end in _open_ends(forces.drive, pipes)]
         if not (self._pumps or self.stages):
             raise UsageError(
                 f"{self.machine.name} delivers nothing: no piston is driven by the shaft; "
@@ -607,12 +696,14 @@ class MachineDelivery:
         # the states of the cylinders at the same angles, once for all pistons of one
         pieces = self.effort.pieces
         states: dict[int, State] = {}
-        for forces, _ in self._pumps:
+        for forces, _ in (*self._pumps, *self._open):
             if id(forces) not in states:
                 angles = pieces.by_crank(position(forces))
                 states[id(forces)] = State.on(forces.drive, angles)
         rate = self._rate_of(
-            pieces, [(states[id(forces)], piston) for forces, piston in self._pumps]
+            pieces,
+            [(states[id(forces)], piston) for forces, piston in self._pumps],
+            [(states[id(forces)], end) for forces, end in self._open],
         )
         # flows of the ends are those of a single piston
         first = self._pumps[0][1]
@@ -650,16 +741,36 @@ class MachineDelivery:
 
     def _delivery_of(self, forces: CylinderForces, piston: DrivenPiston) -> Delivery:
         """Return what one pumping piston delivers, computed once for all its copies."""
-        rate = self._rate_of(forces.pieces, [(forces.samples, piston)])
+        own_ends = [
+            (forces.samples, end)
+            for owner, end in self._open
+            if owner is forces and end.number == piston.number
+        ]
+        rate = self._rate_of(forces.pieces, [(forces.samples, piston)], own_ends)
         is_double_acting = piston.head_delivers and piston.crank_delivers
         delivery = Delivery("", self.machine, forces.pieces, self._count, rate, is_double_acting)
         _ = delivery.answers, delivery.extremes_of("flow")
         return delivery
 
+    @property
+    def open_ends(self) -> Iterator[tuple[str, OpenEnd]]:
+        """The ends with one pressure on both strokes, each with the name of its cylinder, or of its tandem piston."""
+        for forces, end in self._open:
+            name = forces.drive.name
+            if end.number > 0:
+                name = f"{name}, {forces.drive.cylinder.pistons[end.number].name}"
+            yield name, end
+
     def _rate_of(
-        self, pieces: Pieces, pistons: Sequence[tuple[State, DrivenPiston]]
+        self,
+        pieces: Pieces,
+        pistons: Sequence[tuple[State, DrivenPiston]],
+        ends: Sequence[tuple[State, OpenEnd]],
     ) -> Callable[..., Array]:
-        """Return what returns dV/dφ of these pistons together, less the slip; it takes the words of `_displaced`."""
+        """Return what returns dV/dφ of these pistons together, less the slip, and of ends that are always open.
+
+        It takes the words of `_displaced`.
+        """
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         share = 1 - slip
 
@@ -667,6 +778,11 @@ class MachineDelivery:
             terms = [
                 pieces.of(share) * _displaced(state, piston, **words) for state, piston in pistons
             ]
+            is_suction = words.get("is_suction", False)
+            for state, end in ends:
+                if end.pipe == ("suction" if is_suction else "delivery"):
+                    given = _given_by(state, end, words.get("is_derivative", False))
+                    terms.append(-given if is_suction else given)
             rates = pieces.filled(sum(terms))
             # rates of which the terms cancel at all angles are rounding
             sizes = sum(map(pieces.largest, terms))
@@ -674,6 +790,21 @@ class MachineDelivery:
             return np.where(pieces.of(is_left), rates, 0.0)
 
         return rate
+
+
+def _pressures_of_pipes(
+    pistons: Sequence[DrivenPiston], ambient: Number
+) -> dict[str, list[Number]]:
+    """Return the absolute pressures in Pa of the delivery and of the suction pipes, those of the ends that deliver."""
+    pipes: dict[str, list[Number]] = {"delivery": [], "suction": []}
+    for piston in pistons:
+        delivering = {"head_end": piston.head_delivers, "crank_end": piston.crank_delivers}
+        for end, delivers in delivering.items():
+            levels = _absolute_levels(piston.gas, end, ambient) if delivers else []
+            if len(levels) > 1:
+                pipes["delivery"].append(reduce(np.maximum, levels))
+                pipes["suction"].append(reduce(np.minimum, levels))
+    return pipes
 
 
 def _compressor_ends(drive: Drive, piston: DrivenPiston) -> Iterator[CompressorEnd]:

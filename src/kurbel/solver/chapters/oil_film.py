@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray, Number
+from kurbel.arrays import Array, ComplexArray
+from kurbel.numerics.arithmetic import where
 from kurbel.numerics.collocation import Periodic, followed, periodic
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Pieces, highest, refined
@@ -53,7 +54,7 @@ class FilmShape(NamedTuple):
     is_short: bool = False
 
     @classmethod
-    def of_bearing(cls, films: OilFilms, key: str, diameter: Number, length: Number) -> FilmShape:
+    def of_bearing(cls, films: OilFilms, key: str, diameter: Any, length: Any) -> FilmShape:
         """Return the shape of the bearing with this key, on a pin of these sizes unless it has its own."""
         bearing = films.bearings[key]
         diameter = diameter if bearing.diameter is None else bearing.diameter
@@ -61,7 +62,7 @@ class FilmShape(NamedTuple):
         viscosity = films.viscosity if bearing.viscosity is None else bearing.viscosity
         lands = 1
         if bearing.groove is not None:
-            length = length - bearing.groove
+            length = where(length > bearing.groove, length - bearing.groove, np.nan)
             lands = 2
         is_short = films.theory == "short"
         return cls(bearing.clearance, diameter, length, viscosity, lands, is_short)
@@ -268,7 +269,7 @@ class OilFilm(Results):
         pieces: Pieces,
         pressed: ComplexArray,
         turning: Array,
-        omega: Number,
+        omega: Any,
         count: int | None,
     ) -> None:
         self.shape = shape
@@ -284,13 +285,17 @@ class OilFilm(Results):
         self.y = np.where(self.pieces.of(self._failed), 0.0, orbit.samples)
 
     @property
-    def repeats_itself(self) -> bool:
-        """Whether the film of every machine repeats in every cycle."""
-        return not self._failed.any()
+    def obstacle(self) -> str:
+        """Why the only machine has no film, or an empty text."""
+        if not self._failed[0]:
+            return ""
+        if np.isnan(self.shape.length):
+            return "the groove leaves no land of the length of a rod"
+        return "the load turns with the oil or never leaves its side; no film repeats"
 
     def at_angles(self, degrees: Array, pressed: ComplexArray) -> FilmAtAngles | None:
         """Return the film of the only machine at crank angles (n,) in degrees under a load (n,) there, if it repeats."""
-        if not self.repeats_itself:
+        if self.obstacle:
             return None
         machine = np.zeros(len(degrees), dtype=np.intp)
         y = np.stack([self.pieces.at(part, machine, degrees) for part in self.y])
@@ -299,7 +304,7 @@ class OilFilm(Results):
     @cached_property
     def answers(self) -> ValuesById:
         """The key values by id."""
-        if self._count is None and not self.repeats_itself:
+        if self._count is None and self.obstacle:
             return {}
         # the extremes
         parts = np.concatenate((self.y, self.pieces.carried(self._course, self._source)))

@@ -203,7 +203,7 @@ class Strength(Results, ABC):
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
 
 
-class Load(NamedTuple):
+class ThrowLoad(NamedTuple):
     """What acts on a throw, at angles (…): the force of each rod on the pin in N, D + iT; M_A in N m, None if none.
 
     pulls: centrifugal force of each rod in N, which its force has and its column D has not; opposite: the forces of the
@@ -259,7 +259,7 @@ class ThrowStrength(Strength):
         return taken(self.machine, pieces.machine)
 
     def _bodies(
-        self, load: Load, angle: CrankAngle, pieces: Pieces | None = None, number: int = 0
+        self, load: ThrowLoad, angle: CrankAngle, pieces: Pieces | None = None, number: int = 0
     ) -> tuple[FreeBody, Opposite | None]:
         """Return the throw under a load, and the one at the other end of the shaft.
 
@@ -297,7 +297,7 @@ class ThrowStrength(Strength):
         has_torques = len(self.line.throws) > 1
         return StressColumns(phi, states, body, self._places(body, opposite), has_torques)
 
-    def _load_at(self, degrees: Array, within: Array) -> tuple[Load, list[State]]:
+    def _load_at(self, degrees: Array, within: Array) -> tuple[ThrowLoad, list[State]]:
         """Return the load of the only machine at crank angles (n,) in degrees, and the states of its cylinders."""
         states = [self._state(forces, degrees, within) for forces in self.rods]
         torque_A = None
@@ -308,7 +308,7 @@ class ThrowStrength(Strength):
             ) + np.zeros(len(degrees))
         beyond = [pin_load(self._state(forces, degrees, within)) for forces in self._beyond]
         zeros = np.zeros(len(degrees), complex)
-        return Load(
+        return ThrowLoad(
             [zeros + pin_load(state) for state in states], torque_A, opposite=beyond
         ), states
 
@@ -357,12 +357,12 @@ class ThrowStrength(Strength):
             parts.append(torque)
         return np.stack(parts)
 
-    def _load(self, parts: Array) -> Load:
+    def _load(self, parts: Array) -> ThrowLoad:
         """Return the load that these parts are, (parts, nodes, pieces)."""
         rods, beyond = len(self.rods), len(self._beyond)
         of_rods, pulls = parts[: 2 * rods], parts[2 * rods : 3 * rods]
         of_others = parts[3 * rods : 3 * rods + 2 * beyond]
-        return Load(
+        return ThrowLoad(
             list(of_rods[::2] + 1j * of_rods[1::2]),
             parts[-1] if self.before else None,
             list(pulls),
@@ -400,7 +400,7 @@ class ThrowStrength(Strength):
         fine, loads, acting = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
         return fine, acting, np.asarray(loads)
 
-    def _kinks(self, body: FreeBody, load: Load) -> list[Number]:
+    def _kinks(self, body: FreeBody, load: ThrowLoad) -> list[Number]:
         """Return the quantities at whose zeros a magnitude or a stress bends."""
         vectors = [body.pin, body.A, body.moments_at(body.shaft.web_distance)]
         if len(load.rods) > 1:
@@ -595,7 +595,7 @@ class ThrowStrength(Strength):
             loads = [0 * force * radial + 0j for _ in self.rods]
             loads[number] = force * radial + 0j
             beyond = [0 * loads[0] for _ in self._beyond]
-            bodies = self._bodies(Load(loads, None, opposite=beyond), angle, number=number)
+            bodies = self._bodies(ThrowLoad(loads, None, opposite=beyond), angle, number=number)
             of_crank_1 = self._of_crank_1(forces, degrees)
             examined = [place._replace(degrees=of_crank_1) for place in self._places(*bodies)]
             worst = list(map(_worse, worst, examined)) if worst else examined
