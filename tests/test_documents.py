@@ -20,6 +20,7 @@ from pathlib import Path
 import pytest
 
 import from_declarations  # tools/from_declarations.py
+import man_page
 import notebook  # tools/notebook.py
 import python_reference  # tools/python_reference.py
 import shipped  # tools/shipped.py
@@ -182,6 +183,7 @@ GENERATED = {
     "reference/columns.md": from_declarations.columns,
     "reference/key-values.md": from_declarations.key_values,
     "reference/commands.md": from_declarations.commands,
+    "reference/kurbel.1": man_page.page,
 }
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from kurbel.accuracy import trials
 from kurbel.accuracy.methods import by_quad, by_simpson, over_the_turn
-from kurbel.accuracy.textbook import unknown
+from kurbel.accuracy.references import unknown
 from kurbel.accuracy.trials import Trial, errors, examined, savings, with_corners, without_corners
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case

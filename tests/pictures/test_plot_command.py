@@ -64,7 +64,7 @@ def test_without_typst_the_way_out_is_named(
     result = run("plot", WATERWORKS, "card", "-o", str(tmp_path / "x.pdf"))
     assert result.exit_code == 2
     assert (
-        "a pdf needs typst, which is not installed: pip install 'kurbel[plot]'; svg needs no package"
+        "a pdf needs typst, which is not installed: pip install typst; svg needs no package"
         in result.stderr
     )
     assert run("plot", WATERWORKS, "card", "-o", str(tmp_path / "x.svg")).exit_code == 0

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from kurbel.accuracy.textbook import Textbook, TextbookMachine
+from kurbel.accuracy.references import Textbook, TextbookMachine
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Masses, Piston

@@ -34,6 +34,7 @@ def json_schema() -> Schema:
         root["properties"][name] |= _of_figures(form, key_values(), definitions)
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
+        "$id": "urn:kurbel:machine-file:1",
         "title": "kurbel machine file",
         "description": "Every physical value is a number with its unit, such as 450 mm.",
         **root,

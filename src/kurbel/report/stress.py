@@ -58,7 +58,7 @@ def _stressed(case: Case) -> list[Subject]:
     else:
         at = strength.at
         tables = _stress_tables(strength.only)
-    whole = Subject(
+    crankshaft = Subject(
         "crankshaft",
         strength,
         at,
@@ -69,7 +69,7 @@ def _stressed(case: Case) -> list[Subject]:
         tables=tables,
         whole=True,
     )
-    return [*parts, whole]
+    return [*parts, crankshaft]
 
 
 def _stress_tables(throw: ThrowStrength, called: str = "") -> Iterator[Places]:

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from kurbel.errors import refused
 from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.pieces import Angles, Pieces, refined
 from kurbel.traces.period import Clock
+
+if TYPE_CHECKING:
+    from kurbel.traces.heat import HeatLaw
 
 _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
@@ -58,7 +61,7 @@ class Trace(Indivisible):
     known, as a text at the dead centre where the compression begins, the ambient; against: the file counts its angles
     against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the figures of the
     file were multiplied by; clock: how times became its angles; suction, discharge: pressures in
-    Pa in the lines of a compressor, where they are known.
+    Pa in the lines of a compressor, where they are known; heat: by what its heat release is computed.
     Raises RuleError for samples that are no such cycle.
     """
 
@@ -77,6 +80,7 @@ class Trace(Indivisible):
     clock: Clock | None = None
     suction: float | None = None
     discharge: float | None = None
+    heat: "HeatLaw | None" = None
     burns: ClassVar[bool] = False
     by_steam: ClassVar[bool] = False
     compresses: ClassVar[bool] = False
