@@ -7,7 +7,6 @@ import pytest
 from command import run
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 FILM = ("film_thickness_min", "eccentricity_max", "film_pressure_max", "film_loss", "side_flow")
 
@@ -84,7 +83,7 @@ def test_the_shipped_engine_has_no_warning_on_its_film() -> None:
     assert "\n  oil film" not in shown
 
 
-def test_what_is_left_out_is_said() -> None:
+def test_what_is_left_out_is_reported() -> None:
     still = ENGINE.replace("speed: 200 rpm\n", "")
     assert "oil film       no speed given" in output("bearings", "-", text=still)
     assert "oil film of crank pin: no speed given" in output("check", "-", text=still)
@@ -94,7 +93,7 @@ def test_what_is_left_out_is_said() -> None:
     )
 
 
-def test_a_machine_without_the_key_is_asked_in_vain() -> None:
+def test_a_machine_without_the_key_is_searched_in_vain() -> None:
     result = run(
         "sweep", str(CONFIGS["waterworks"]), "--vary", "rod_ratio=4,5", "--columns", "h_0,min"
     )

@@ -8,7 +8,8 @@ from kurbel.notes.left_out import (
     bearings_left_out,
     film_left_out,
 )
-from kurbel.notes.warnings import as_far_as_solved, bearing_warnings, of_machine, rods_on_pin
+from kurbel.notes.machine_results import bearing_warnings, rods_on_pin
+from kurbel.notes.warnings import as_far_as_solved, of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.bearings import Bearing
 from kurbel.tables.frame import Functions, Subject
