@@ -65,8 +65,8 @@ def _bearing_notes(case: Case) -> Iterator[str]:
     if machine.oil_film:
         yield (
             "Oil film by the mobility method: rigid and aligned surfaces, constant viscosity, a clearance that is "
-            "always full of oil. Films of real bearings are thinner; compare designs by it. ε_h from the rod's line, "
-            "of a main bearing from the stroke line of cylinder 1."
+            "always full of oil. Films of real bearings are thinner and their pressures lower: compare designs by them. "
+            "ε_h counts from the rod's line, of a main bearing from the stroke line of cylinder 1."
         )
     if len(machine.cylinders) > 1:
         yield "φ is the angle of crank 1."
