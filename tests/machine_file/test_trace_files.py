@@ -326,7 +326,7 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
     (
         rows(),
         ", angle_unit: s",
-        "times become angles by a speed; write 'recorded_speed: 1500 rpm', say",
+        "times become angles by a speed, and the pressure has no clear period; write 'recorded_speed: 1500 rpm', say",
     ),
     (rows(), ", angle_unit: rad, recorded_speed: 1500 rpm", "write 'angle_unit: s'"),
     (

@@ -41,10 +41,16 @@ def _instead(name: str, text: str) -> Callable[[Command], Command]:
 
 _SHARED = {"where": stacked(where_option), "uncertainty": stacked(uncertainty_option)}
 """What the rows of commands call options that several commands take."""
+_shaft_angle_option = click.option(
+    "--shaft-angle",
+    is_flag=True,
+    help="Rows of every cylinder at the same angles of crank 1, not of its own crank; no key values.",
+)
 _OF_COMMAND = {
-    "motion": row_options,
+    "motion": stacked(row_options, _shaft_angle_option),
     "forces": stacked(
         row_options,
+        _shaft_angle_option,
         click.option(
             "--cycle",
             type=click.IntRange(min=1),

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from os.path import basename
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -24,11 +24,15 @@ from kurbel.traces.correct import KnownLevel, Trace, motored_peak
 from kurbel.traces.cycles import samples_of_file, whole_cycles
 from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout
 
+if TYPE_CHECKING:
+    from kurbel.traces.heat import HeatLaw
+
 
 class Columns(Record):
     """The layout of a file of columns; `what` was measured over the angles: pressures or torques."""
 
     what: ClassVar[str]
+    needs_speed: ClassVar[bool] = True
     file = alternative(
         FILE_PATH, "File with a column of angles in degrees", example="indicator.csv"
     )
@@ -42,7 +46,28 @@ class Columns(Record):
         needs="file",
     )
     recorded_speed = alternative(
-        "speed", "Constant speed at which times were recorded", above=0, needs="angle_unit"
+        "speed",
+        "Constant speed at which times were recorded; of pressures, where their period does not show it",
+        above=0,
+        needs="angle_unit",
+    )
+    pulse_column = alternative(
+        int,
+        "Column of the pulses of a toothed wheel, instead of a column of angles",
+        instead="angle_column",
+        needs="file",
+    )
+    teeth = alternative(
+        NumberForm(whole=True, least=1),
+        "Teeth of the wheel in one turn, with the missing ones",
+        absent="1",
+        needs="pulse_column",
+    )
+    missing_teeth = alternative(
+        NumberForm(whole=True, least=0),
+        "Teeth that are left out at the reference: angles count from the first tooth after the gap",
+        absent="0",
+        needs="pulse_column",
     )
     angle_step = alternative(
         "angle",
@@ -79,16 +104,19 @@ class Columns(Record):
         if f"{cls.what}_columns" in values:
             key = f"{cls.what}_columns"
             columns = values[key]
-        angle_column = values.get("angle_column", 1)
+        angle_column = values.get("pulse_column", values.get("angle_column", 1))
         is_of_angles = angle_column in columns and "angle_step" not in values
         yield Rule(key, is_of_angles, f"column {angle_column} is that of the angles")
         # times and the speed that makes them angles
         has_times = values.get("angle_unit") in SECONDS
         has_speed = "recorded_speed" in values
         message = "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"
-        yield Rule("angle_unit", has_times and not has_speed, message)
+        yield Rule("angle_unit", has_times and not has_speed and cls.needs_speed, message)
         message = "a speed is for times only; write 'angle_unit: s'"
         yield Rule("recorded_speed", has_speed and not has_times, message)
+        # the wheel whose pulses are angles
+        message = "how many 'teeth' has the wheel in one turn? Write 'teeth: 60', say"
+        yield Rule("pulse_column", "pulse_column" in values and "teeth" not in values, message)
 
     @classmethod
     def layout(cls, keys: dict[str, Any]) -> Layout:
@@ -100,6 +128,12 @@ class Columns(Record):
         delimiter = keys.pop("delimiter", "comma")
         words = {sign: word for word, sign in DELIMITERS.items()}
         return Layout(columns, delimiter=words.get(delimiter, delimiter), **keys)
+
+
+def _heat_law() -> "type[HeatLaw]":
+    from kurbel.traces.heat import HeatLaw
+
+    return HeatLaw
 
 
 class Motored(Record):
@@ -120,6 +154,7 @@ class Measured(Columns):
     """What becomes a `Trace` once its samples are read and closed to whole cycles."""
 
     what = "pressure"
+    needs_speed = False
     file = Columns.file._replace(
         text="File with a column of angles in degrees and one of pressures; or give `points`",
         required=True,
@@ -190,6 +225,20 @@ class Measured(Columns):
         absent="that in the cylinder at its smallest volume",
     )
 
+    heat = alternative(
+        RecordForm(_heat_law),
+        "Heat release, by the first law from pressure and volume",
+        absent="not computed",
+    )
+
+    @classmethod
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        """Yield the rules on keys that contradict one another."""
+        yield from super().rules_of_keys(values)
+        has_volumes = "clearance" in values or "compression_ratio" in values
+        message = "heat needs the volumes; give 'clearance' or 'compression_ratio'"
+        yield Rule("heat", "heat" in values and not has_volumes, message)
+
     @classmethod
     def of_keys(
         cls,
@@ -206,6 +255,7 @@ class Measured(Columns):
         compression_ratio: float | None = None,
         suction_line: float | None = None,
         discharge_line: float | None = None,
+        heat: "HeatLaw | None" = None,
         **layout: Any,
     ) -> Trace:
         """Return the trace that these keys describe, its file read."""
@@ -256,9 +306,10 @@ class Measured(Columns):
             against=counts_against,
             unit=multiplier / divisor,
             scale=scale,
-            timed=file_layout.angle_unit in SECONDS,
+            clock=samples.clock,
             suction=suction_line,
             discharge=discharge_line,
+            heat=heat,
         )
 
 
@@ -272,6 +323,8 @@ def dead_centre(
     file = motored.motored
     try:
         samples = samples_of_file(file, layout, "pressure", base, against)
+        if samples.clock is not None and samples.clock.is_free:
+            refused("a motored trace by time needs a 'recorded_speed'")
         peak, uncertainty = motored_peak(samples.angles, samples.values)
     except RuleError as error:
         faults = [fault._replace(path=("angle_zero", "motored")) for fault in error.faults]

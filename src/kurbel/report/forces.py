@@ -5,13 +5,15 @@ What is only said to people, warnings and what is left out, is imported when it 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from kurbel.arrays import Array
 from kurbel.errors import UsageError
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.gas import Pressure
+from kurbel.solver.state import State
 from kurbel.tables.frame import Frame, Functions, Subject
 from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
@@ -59,7 +61,46 @@ def _with_motion(case: Case) -> list[Subject]:
     ]
 
 
-MOTION = Functions("Motion of the crank train", _with_motion, mechanism_notes, lambda case: 360.0)
+def _motion_shown(
+    case: Case, frame: Frame, shaft_angle: bool = False
+) -> tuple[list[Subject], Iterable[str]]:
+    """Return the motion of every cylinder, over its own crank angle or that of crank 1."""
+    cylinders = _with_motion(case)
+    if shaft_angle:
+        cylinders = _over_shaft_angle(cylinders, frame)
+    return cylinders, mechanism_notes(case)
+
+
+def _over_shaft_angle(subjects: list[Subject], frame: Frame) -> list[Subject]:
+    """Return the cylinders with rows over the angle of crank 1 instead of their own one, φ − δ, and no key values.
+
+    Raises UsageError where rows or key values are requested that count by the own angle.
+    """
+    if frame.names or callable(frame.angles):
+        raise UsageError(
+            "--shaft-angle has a table over the angle of crank 1; leave out --key-values, --where and --over"
+        )
+    over_shaft_angle = []
+    for subject in subjects:
+        forces = subject.results
+        if isinstance(forces, CylinderForces):
+            subject = subject._replace(at=_at_shaft_angle(forces), columns_alone=True, tables=())
+            over_shaft_angle.append(subject)
+    return over_shaft_angle
+
+
+def _at_shaft_angle(forces: CylinderForces) -> Callable[[Array], State]:
+    """Return the state of a cylinder as a function of the angles (n,) of crank 1 in degrees."""
+    return lambda degrees: forces.at(degrees - forces.drive.lag)
+
+
+MOTION = Functions(
+    "Motion of the crank train",
+    _with_motion,
+    mechanism_notes,
+    lambda case: 360.0,
+    own=_motion_shown,
+)
 
 
 def _with_forces(case: Case) -> list[Subject]:
@@ -91,7 +132,9 @@ def _total_work() -> type[TotalWork]:
     return TotalWork
 
 
-def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str]]:
+def _forces_shown(
+    case: Case, frame: Frame, shaft_angle: bool = False
+) -> tuple[list[Subject], Iterable[str]]:
     """Return the forces of every cylinder; without the table over the crank angle its measured cycles, one to a line.
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
@@ -104,6 +147,8 @@ def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str
         cylinders = [
             subject._replace(warnings=warnings.get(subject.name, ())) for subject in cylinders
         ]
+    if shaft_angle:
+        cylinders = _over_shaft_angle(cylinders, frame)
     if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()

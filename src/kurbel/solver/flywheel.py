@@ -28,8 +28,9 @@ from kurbel.quantity import Computed, Heading, key_value, value
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, part
-from kurbel.solver.forces import Brake, CylinderForces
+from kurbel.solver.forces import CylinderForces
 from kurbel.solver.motion import every_dead_centre
+from kurbel.solver.piston_works import Brake
 from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
 from kurbel.solver.state import State
 from kurbel.solver.total_work import TotalWork

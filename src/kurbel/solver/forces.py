@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache, cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
 from kurbel.numerics.pieces import resolved
 from kurbel.quantity import Heading, Quantity, value, values_for
+from kurbel.solver.books_of_friction import mean_by_integral, mean_by_logarithm
 from kurbel.solver.cycle import SampledCylinder, reversals, shared
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import (
@@ -28,9 +30,9 @@ from kurbel.solver.figures import (
     part,
     result_rows,
 )
-from kurbel.solver.gas import PistonGas
 from kurbel.solver.motion import Motion
 from kurbel.solver.newton import residual
+from kurbel.solver.piston_works import Brake, PistonWork
 from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
 
@@ -66,49 +68,6 @@ RUBBING = {
 _PLACES = {**SLIDING, "constant": ("c", "by the constant force"), **RUBBING}
 
 
-class Brake(Results):
-    """Brake power compared with indicated power; None without one of them.
-
-    A driven machine takes more power at the shaft than its pistons give to the gas: there p_r = p_e − |p_i|, and the
-    efficiency is indicated over brake power. indicated: power in W of all cylinders, negative where they are driven;
-    None where one has none.
-    """
-
-    mean_pressure_brake = value(
-        "p_e", "pressure", "Mean effective pressure: brake work over the swept volume"
-    )
-    mean_pressure_friction = value("p_r", "pressure", "Friction mean effective pressure, p_i − p_e")
-    eta_m = value("η_m", "ratio", "Mechanical efficiency: brake power over indicated power")
-
-    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
-        self.machine, self.cylinders = machine, cylinders
-        self.indicated: Any = _sum_of_all([cylinder.power for cylinder in cylinders])
-
-    @cached_property
-    def answers(self) -> dict[str, object]:
-        """The key values."""
-        found, power, indicated = dict[str, object](), self.machine.brake_power, self.indicated
-        if power is None:
-            return found
-        # each cylinder sweeps once in a turn, in a cycle of two turns in every other one
-        gases = [
-            (cylinder.drive.own_gas, cylinder.drive.revolutions) for cylinder in self.cylinders
-        ]
-        swept = _sum_of_all(
-            [None if gas is None else gas.swept_volume / turns for gas, turns in gases]
-        )
-        rate = None if swept is None or self.machine.speed is None else swept * self.machine.speed
-        if rate is not None and not every(rate == 0):
-            found["mean_pressure_brake"] = brake = power / rate
-            if indicated is not None:
-                sense = where(indicated < 0, -1.0, 1.0)
-                found["mean_pressure_friction"] = sense * (abs(indicated) / rate - brake)
-        if indicated is not None and not every(power == 0) and not every(indicated == 0):
-            drives = indicated > 0
-            found["eta_m"] = where(drives, power, -indicated) / where(drives, indicated, power)
-        return found
-
-
 def share_of_driving(forces: CylinderForces, name: str) -> Any:
     """Return a work of friction over the work of the driving pistons; nan for machines of many without such pistons."""
     return _over_driving(forces, forces.friction_works.get(name))
@@ -133,31 +92,6 @@ def _per_second(forces: CylinderForces, work: Any) -> Any:
 def _rubs_at_one_place(forces: CylinderForces) -> bool:
     """Return whether friction is given at one place, so that what is lost there is all that is lost."""
     return len(forces.friction_works) == 1
-
-
-class PistonWork(Results):
-    """Work and power of one of several pistons of a rod."""
-
-    command = "forces"
-    work = value(
-        "A_i", "energy", "Indicated work of the piston per cycle", lambda one: one.gas.work
-    )
-    power = value(
-        "N_i",
-        "power",
-        "Indicated power of the piston",
-        lambda one: None if one.rate is None else one.gas.work * one.rate,
-    )
-    mean_pressure = value(
-        "p_i",
-        "pressure",
-        "Mean indicated pressure of the piston",
-        lambda one: one.gas.work / one.gas.swept_volume,
-    )
-
-    def __init__(self, name: str, gas: PistonGas, rate: Number | None) -> None:
-        """Take the name, the pressures, and cycles per second, None without a speed."""
-        self.name, self.gas, self.rate = name, gas, rate
 
 
 class CylinderForces(SampledCylinder, Results):
@@ -187,10 +121,9 @@ class CylinderForces(SampledCylinder, Results):
         Where journals rub, each carries what its own throw carries.
         """
         friction = self.drive.pin_friction
-        by_throw = (
-            friction is not None and friction.line is not None and some(friction.journals != 0)
-        )
-        return not by_throw and work_alike(self.drive.cylinder, other)
+        if friction is not None and friction.line is not None and some(friction.journals != 0):
+            return False
+        return work_alike(self.drive.cylinder, other)
 
     @property
     def rows(self) -> Rows:
@@ -218,11 +151,9 @@ class CylinderForces(SampledCylinder, Results):
     @part(Motion)
     def motion(self) -> Motion:
         """What the mechanism does."""
-        return (
-            self.twin.motion
-            if self.twin
-            else Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
-        )
+        if self.twin:
+            return self.twin.motion
+        return Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
 
     @part(_valve_gear, there=lambda forces: forces.drive.cylinder.valve is not None)
     def valve_gear(self) -> ValveGear | None:
@@ -301,13 +232,13 @@ class CylinderForces(SampledCylinder, Results):
         "A_i+",
         "energy",
         "Indicated work of the driving pistons per cycle",
-        unless=lambda one: one.works_one_way,
+        unless=lambda forces: forces.works_one_way,
     )
     work_driven = value(
         "A_i−",
         "energy",
         "Indicated work of the driven pistons per cycle, negative",
-        unless=lambda one: one.works_one_way,
+        unless=lambda forces: forces.works_one_way,
     )
     resistance_work = value(
         "A_r", "energy", "Work per cycle of the resistance at the ram or rocker, negative"
@@ -332,11 +263,8 @@ class CylinderForces(SampledCylinder, Results):
     def brake(self) -> Brake | None:
         """Key values of the brake, where this is the only cylinder."""
         machine = self.drive.machine
-        return (
-            Brake(machine, (self,))
-            if len(machine.cylinders) == 1 and machine.brake_power is not None
-            else None
-        )
+        is_only = len(machine.cylinders) == 1
+        return Brake(machine, (self,)) if is_only and machine.brake_power is not None else None
 
     work_sensitivity = value(  # an indicator's dead centre is seldom known better
         "dA_i/A_i",
@@ -466,37 +394,49 @@ class CylinderForces(SampledCylinder, Results):
     @part(RodLoads, unless=lambda forces: forces.no_compressor)
     def rod_loads(self) -> RodLoads | None:
         """The rod load, judged after API 618; None where no force acts."""
-        columns = ("P_gas", "P_rod", "P_piston_rod") if self.drive.has_force else ()
-        loads = {name: values for name in columns if (values := self.sampled(name)) is not None}
+        if not self.drive.has_force:
+            return None
+        loads = {}
+        for name in ("P_gas", "P_rod", "P_piston_rod"):
+            values = self.sampled(name)
+            if values is not None:
+                loads[name] = values
         return RodLoads(self.drive, self.pieces, loads) if loads else None
 
     @shared
     def answers(self) -> dict[str, object]:
         """The key values that follow from dimensions and pressures alone, without samples of forces."""
-        drive, pistons, found = self.drive, self.drive.cylinder.pistons, dict[str, object]()
-        found["m"] = drive.mass if drive.cylinder.masses else None
-        found["resistance_work"] = drive.resistance_work
+        drive, pistons = self.drive, self.drive.cylinder.pistons
+        answers = dict[str, object]()
+        answers["m"] = drive.mass if drive.cylinder.masses else None
+        answers["resistance_work"] = drive.resistance_work
         if pistons:
-            found["A_head"], found["A_crank"] = pistons[0].head_area, pistons[0].crank_area
-        if gas := drive.own_gas:
-            highest = largest(*(end.highest for end in (gas.head, gas.crank) if end))
-            found["p_max"] = Extreme(highest.value + gas.base, highest.degrees)
-            found["mean_pressure"] = gas.work / gas.swept_volume
+            answers["A_head"] = pistons[0].head_area
+            answers["A_crank"] = pistons[0].crank_area
+
+        # of the cylinder's own piston
+        gas = drive.own_gas
+        if gas:
+            highest = largest(*(end.highest for end, _ in gas.ends))
+            answers["p_max"] = Extreme(highest.value + gas.base, highest.degrees)
+            answers["mean_pressure"] = gas.work / gas.swept_volume
             volume = gas.clearance_volumes[0] if gas.head else 0.0
             if some(volume != 0):  # of many machines nan where it is not known
-                found["V_clearance"] = where(volume == 0, math.nan, volume)
+                answers["V_clearance"] = where(volume == 0, math.nan, volume)
+
+        # of all pistons of the rod
         if drive.gas:
-            each = [gas.work for gas in drive.gas]
-            found["work"] = work = total(*(one for gas in drive.gas for one in gas.works))
-            found["work_driving"] = total(*(where(one > 0, one, 0.0) for one in each))
-            found["work_driven"] = total(*(where(one < 0, one, 0.0) for one in each))
-            found["power"] = _per_second(self, work)
+            works = [gas.work for gas in drive.gas]
+            answers["work"] = work = total(*chain(*(gas.works for gas in drive.gas)))
+            answers["work_driving"] = total(*(where(work > 0, work, 0.0) for work in works))
+            answers["work_driven"] = total(*(where(work < 0, work, 0.0) for work in works))
+            answers["power"] = _per_second(self, work)
         traced = [gas.traced for gas in drive.gas if gas.traced]
-        if own := math.fsum(work for work, _ in traced):
-            found["work_sensitivity"] = (
-                math.radians(0.1) * math.fsum(by_angle for _, by_angle in traced) / own
-            )
-        return found
+        traced_work = math.fsum(work for work, _ in traced)
+        if traced_work:
+            by_angle = math.fsum(by_angle for _, by_angle in traced)
+            answers["work_sensitivity"] = math.radians(0.1) * by_angle / traced_work
+        return answers
 
     @property
     def works_one_way(self) -> bool:
@@ -510,18 +450,15 @@ class CylinderForces(SampledCylinder, Results):
         speed = machine.speed
         rate = None if speed is None or every(speed == 0) else speed / self.drive.revolutions
         names = machine.piston_names(self.drive.cylinder)
-        each = tuple(PistonWork(name, gas, rate) for name, gas in zip(names, gases))
-        return each if len(each) > 1 else ()
+        pistons = tuple(PistonWork(name, gas, rate) for name, gas in zip(names, gases))
+        return pistons if len(pistons) > 1 else ()
 
     @property
     def no_compressor(self) -> bool:
         """Whether rod loads are not shown: for engines, also motored four-stroke ones, and without a connecting rod."""
-        return (
-            self.work is None
-            or self.work >= 0
-            or self.drive.revolutions > 1
-            or not self.mechanism.has_rod
-        )
+        if self.work is None or self.work >= 0:
+            return True
+        return self.drive.revolutions > 1 or not self.mechanism.has_rod
 
     @property
     def open_at_crank_end(self) -> bool:
@@ -543,7 +480,7 @@ class CylinderForces(SampledCylinder, Results):
         piston_force, force = self.extremes_of("P"), self.extremes_of(column)
         if column == "P" or piston_force is None or force is None:
             return False
-        return all(_are_equal(one, other) for one, other in zip(force, piston_force))
+        return all(map(_are_equal, force, piston_force))
 
     @property
     def inertia_extremes(self) -> list[Extreme]:
@@ -553,8 +490,8 @@ class CylinderForces(SampledCylinder, Results):
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
-        found = self._extremes.get(column) if self.drive.has_force else None
-        return found or self.motion.extremes_of(column)
+        extremes = self._extremes.get(column) if self.drive.has_force else None
+        return extremes or self.motion.extremes_of(column)
 
     @shared
     def _extremes(self) -> dict[str, Extremes]:
@@ -578,8 +515,10 @@ class CylinderForces(SampledCylinder, Results):
         P = self.sampled("P") if self.drive.has_force else None
         if P is None:
             return None, 0
-        found = reversals(self.drive, self.pieces, P)
-        return found, len(self.pieces.zeros(P).degrees) - len(found) if self.drive.noise else 0
+        changes = reversals(self.drive, self.pieces, P)
+        if not self.drive.noise:
+            return changes, 0
+        return changes, len(self.pieces.zeros(P).degrees) - len(changes)
 
     # guide and shoe of the crosshead
 
@@ -589,7 +528,8 @@ class CylinderForces(SampledCylinder, Results):
 
         Empty, too, where there is no guide, no N, or no inclination, so that no guide is the lower one.
         """
-        down, side = self.drive.down, self.sampled("N") if self.drive.has_force else None
+        down = self.drive.down
+        side = self.sampled("N") if self.drive.has_force else None
         if side is None or not down or not (self.mechanism.guided and self.mechanism.has_rod):
             return ()
         turns = self.pieces.zeros(side).degrees.tolist() or [0.0]
@@ -601,22 +541,26 @@ class CylinderForces(SampledCylinder, Results):
     @cached_property
     def on_guide(self) -> dict[str, object]:
         """The key values of the shoe; the means over its path there and back, or over time, only with friction."""
-        drive, found = self.drive, dict[str, object]()
-        if drive.guide_area is not None and (side := self.extremes_of("N")):
-            most = largest(*(Extreme(abs(one.value), one.degrees) for one in side))
-            found["p_guide_max"] = Extreme(most.value / drive.guide_area, most.degrees)
-        if drive.guide_area is not None and drive.has_force:
+        drive = self.drive
+        answers = dict[str, object]()
+        if drive.guide_area is None:
+            return answers
+        side = self.extremes_of("N")
+        if side:
+            most = largest(*(Extreme(abs(force.value), force.degrees) for force in side))
+            answers["p_guide_max"] = Extreme(most.value / drive.guide_area, most.degrees)
+        if drive.has_force:
             wear = self.extremes_over({"wear": self.samples.wear})
-            found["wear_max"] = wear["wear"].largest if wear else None
+            answers["wear_max"] = wear["wear"].largest if wear else None
+
         lost, speed = self.friction_works.get("crosshead"), drive.machine.speed
-        if drive.guide_area is not None and lost is not None:
+        if lost is not None:
             if drive.rubs and some(lost != 0):
-                found["p_guide_mean"] = lost / (
-                    drive.crosshead_friction * drive.guide_area * drive.path
-                )
+                path_of_area = drive.crosshead_friction * drive.guide_area * drive.path
+                answers["p_guide_mean"] = lost / path_of_area
             if speed is not None:
-                found["wear_mean"] = lost * speed / drive.revolutions
-        return found
+                answers["wear_mean"] = lost * speed / drive.revolutions
+        return answers
 
     # works
 
@@ -635,36 +579,40 @@ class CylinderForces(SampledCylinder, Results):
 
         Constant forces act over the whole path.
         """
-        drive, friction, found = self.drive, self.drive.cylinder.friction, dict[str, Any]()
+        drive, friction = self.drive, self.drive.cylinder.friction
+        works = dict[str, Any]()
         if friction is None:
-            return found
+            return works
 
         def over_cycle(values: Number) -> Number:
             return self.result(self.pieces.integral(self.pieces.filled(values)))
 
         if friction.crosshead is not None and drive.has_force:
-            drag = (
-                self.samples.crosshead_drag * (self.samples.slope * self.samples.direction)
-                if drive.rubs
-                else None
-            )
-            found["crosshead"] = 0.0 if drag is None else over_cycle(drag)
+            works["crosshead"] = 0.0
+            if drive.rubs:
+                samples = self.samples
+                works["crosshead"] = over_cycle(
+                    samples.crosshead_drag * (samples.slope * samples.direction)
+                )
         if friction.rings is not None:
-            found["rings"] = drive.ring_force * drive.path
+            works["rings"] = drive.ring_force * drive.path
             if some(drive.ring_surface != 0):
                 drag = np.abs(self.samples.pressure_difference) * self.pieces.of(drive.ring_surface)
-                found["rings"] = over_cycle(drag * self.samples.slope * self.samples.direction)
+                works["rings"] = over_cycle(drag * self.samples.slope * self.samples.direction)
         if friction.constant is not None:
-            found["constant"] = friction.constant * drive.path
-        given = (*friction.of_pins, *(["block"] if friction.block is not None else []))
+            works["constant"] = friction.constant * drive.path
         if drive.has_force:
-            found |= {name: over_cycle(self.samples.losses.get(name, 0.0)) for name in given}
+            names = list(friction.of_pins)
+            if friction.block is not None:
+                names.append("block")
+            for name in names:
+                works[name] = over_cycle(self.samples.losses.get(name, 0.0))
         if friction.guides is not None and drive.has_force:
             samples = self.samples
-            found["guides"] = over_cycle(
+            works["guides"] = over_cycle(
                 samples.drag_of_guides * (samples.slope * samples.direction)
             )
-        return found
+        return works
 
     def of_crosshead(self, formula: Callable[[Number, Number], Number]) -> Number | None:
         """Return a formula of the books in λ = R/L and f; None without friction at the crosshead."""
@@ -674,10 +622,8 @@ class CylinderForces(SampledCylinder, Results):
 
     def mean_crosshead_friction(self) -> Number | None:
         """Return ½ λ f P_m in N (D 6), P_m the mean magnitude of the piston force over the path of the crosshead."""
-        share, P = (
-            self.loss_crosshead_redtenbacher,
-            self.sampled("P") if self.drive.has_force else None,
-        )
+        share = self.loss_crosshead_redtenbacher
+        P = self.sampled("P") if self.drive.has_force else None
         if share is None or P is None:
             return None
         # |P| |dx| has kinks where P changes sign; the slope does only at the ends of pieces
@@ -700,49 +646,18 @@ class CylinderForces(SampledCylinder, Results):
         """
         if self.work_left is None:
             return None
-        turnover, whole = (
-            self.result(self.pieces.integral(one))
-            for one in (np.abs(self.samples.M), self.samples.M)
-        )
-        return where(
-            turnover > 0, (whole - self.work_left) / where(turnover > 0, turnover, 1.0), 0.0
-        )
-
-
-def mean_by_logarithm(lam: Number, f: Number) -> Number:
-    """Return Redtenbacher's mean of the friction over the piston force with cos β ≈ 1, sin β ≈ β: 1 − ln(1 + λf)/(λf).
-
-    >>> f"{mean_by_logarithm(1 / 6, 0.1):.4%}"
-    '0.8242%'
-    """
-    product = np.asarray(lam * f, dtype=float)
-    divisor = np.where(product == 0, 1.0, product)
-    return _float_or_array(1 - np.where(product == 0, 1.0, np.log1p(divisor) / divisor))
-
-
-def mean_by_integral(lam: Number, f: Number) -> Number:
-    """Return the mean of f sin β/(cos β + f sin β) over the rod angle β from 0 to λ (D 5).
-
-    (f/(λ (1 + f²))) (f λ − ln(cos λ + f sin λ)).
-
-    >>> f"{mean_by_integral(1 / 6, 0.1):.4%}"
-    '0.8280%'
-    """
-    widest = np.asarray(lam, dtype=float)
-    divisor = np.where(widest == 0, 1.0, widest)
-    # cos β − 1 without cancellation
-    lost = np.log1p(f * np.sin(widest) - 2 * np.sin(widest / 2) ** 2)
-    return _float_or_array(f * (f * widest - lost) / (divisor * (1 + f * f)))
+        M = self.samples.M
+        turnover = self.result(self.pieces.integral(np.abs(M)))
+        work = self.result(self.pieces.integral(M))
+        has_turnover = turnover > 0
+        left_open = (work - self.work_left) / where(has_turnover, turnover, 1.0)
+        return where(has_turnover, left_open, 0.0)
 
 
 def _are_equal(force: Extreme, other: Extreme) -> bool:
     """Return whether two extremes of one machine are equal but for rounding, at the same angle."""
     same_value = math.isclose(force.value, other.value, rel_tol=1e-12)
     return same_value and math.isclose(force.degrees, other.degrees, abs_tol=1e-9)
-
-
-def _float_or_array(values: Array) -> Number:
-    return float(values) if np.ndim(values) == 0 else values
 
 
 @cache
@@ -761,9 +676,3 @@ def _rows(
     elif absolute:
         rows = rows.changed(Quantity.absolute)
     return rows if guided else rows.changed(Quantity.without_guide)
-
-
-def _sum_of_all(values: Sequence[Any]) -> Any:
-    """Return the sum of the values of all cylinders; None where one has none."""
-    known = [value for value in values if value is not None]
-    return total(*known) if known and len(known) == len(values) else None

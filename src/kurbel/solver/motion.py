@@ -39,36 +39,40 @@ class MotionColumns(AtAngles):
         "z",
         "ratio",
         "Displacement as a fraction of the stroke, or of the swing, from the inner dead centre",
-        lambda one: None if one.mechanism.turns else one.displacement / one.mechanism.stroke,
+        lambda state: (
+            None if state.mechanism.turns else state.displacement / state.mechanism.stroke
+        ),
         on_request=("motion", "forces"),
     )
     psi = value(
         "ψ",
         "angle",
         "Angle between connecting rod and stroke line",
-        lambda one: None if one.rod_angle is None else bearing(*one.rod_angle),
+        lambda state: None if state.rod_angle is None else bearing(*state.rod_angle),
     )
     x = value(
         "x",
         "length",
         "Displacement from the inner dead centre toward the shaft; of a quick-return ram, from mid-stroke",
-        lambda one: one.coordinate if one.mechanism.slides else None,
+        lambda state: state.coordinate if state.mechanism.slides else None,
     )
     c = value(
         "c",
         "velocity",
         "Velocity, positive toward the shaft; of a quick-return ram, positive on the working stroke",
-        lambda one: (
-            one.slope * one.omega if one.mechanism.slides and one.omega is not None else None
+        lambda state: (
+            state.slope * state.omega
+            if state.mechanism.slides and state.omega is not None
+            else None
         ),
     )
     b = value(  # a power would raise where the product is inf
         "b",
         "acceleration",
         "Acceleration, positive in the direction of positive velocity",
-        lambda one: (
-            one.curvature * (one.omega * one.omega)
-            if one.mechanism.slides and one.omega is not None
+        lambda state: (
+            state.curvature * (state.omega * state.omega)
+            if state.mechanism.slides and state.omega is not None
             else None
         ),
     )
@@ -76,31 +80,33 @@ class MotionColumns(AtAngles):
         "x_Q",
         "length",
         "Coordinate of the point of the rod from the shaft axis, along φ = 0",
-        lambda one: one.point and one.point.x,
+        lambda state: state.point and state.point.x,
         on_request=("forces",),
     )
     y_point = value(
         "y_Q",
         "length",
         "Coordinate of the point of the rod from the shaft axis, along φ = 90°",
-        lambda one: one.point and one.point.y,
+        lambda state: state.point and state.point.y,
         on_request=("forces",),
     )
     v_point = value(
         "v_Q",
         "velocity",
         "Speed of the point of the rod",
-        lambda one: None if one.point is None or one.omega is None else one.point.speed * one.omega,
+        lambda state: (
+            None if state.point is None or state.omega is None else state.point.speed * state.omega
+        ),
         on_request=("forces",),
     )
     b_point = value(
         "b_Q",
         "acceleration",
         "Magnitude of the acceleration of the point of the rod",
-        lambda one: (
+        lambda state: (
             None
-            if one.point is None or one.omega is None
-            else one.point.acceleration * (one.omega * one.omega)
+            if state.point is None or state.omega is None
+            else state.point.acceleration * (state.omega * state.omega)
         ),
         on_request=("forces",),
     )
@@ -113,12 +119,8 @@ class MotionColumns(AtAngles):
         omega: Number | None,
         of_point: RodPoint | None = None,
     ) -> None:
-        self.mechanism, self.within, self.omega, self.phi = (
-            mechanism,
-            within,
-            omega,
-            np.asarray(angle.degrees),
-        )
+        self.mechanism, self.within, self.omega = mechanism, within, omega
+        self.phi = np.asarray(angle.degrees)
         self.rod_angle: Any = mechanism.rod_angle(angle)
         self.angle, self.posed = angle, angle._replace(rod=self.rod_angle)
         self._of_point = of_point
@@ -162,11 +164,9 @@ class MotionColumns(AtAngles):
     def point(self) -> PointMotion | None:
         """Motion of the point of the rod."""
         of = self._of_point
-        return (
-            self.mechanism.point_at(self.angle, of.from_crank_pin(self.mechanism), of.across)
-            if of
-            else None
-        )
+        if of is None:
+            return None
+        return self.mechanism.point_at(self.angle, of.from_crank_pin(self.mechanism), of.across)
 
 
 def _equal_strokes(motion: Motion) -> bool:
@@ -257,40 +257,35 @@ class Motion(Results):
     @cached_property
     def answers(self) -> dict[str, object]:
         """The key values; None where there is none."""
-        one, found = self.mechanism, dict[str, object](phi_work=self.mechanism.phi_work)
-        found["phi_return"] = one.phi_return
-        if one.has_dead_centres:
-            centres = (
-                where(end < 0, end + 360.0, end) for end in one.dead_centres()
-            )  # from −360° to 720°
-            found["phi_idc"], found["phi_odc"] = (
-                where(end >= 360.0, end - 360.0, end) for end in centres
-            )
+        mechanism = self.mechanism
+        answers = dict[str, object](phi_work=mechanism.phi_work, phi_return=mechanism.phi_return)
+        if mechanism.has_dead_centres:
+            inner, outer = mechanism.dead_centres()
+            answers["phi_idc"] = _within_turn(inner)
+            answers["phi_odc"] = _within_turn(outer)
         if self.omega is not None:
-            found["v"] = one.crank * self.omega
-        if not one.slides:
-            return found
-        pieces, (_, curvature, *_) = self._turn
-        found["stroke"], found["phi_b_zero"] = (
-            one.stroke,
-            pieces.zeros(curvature).listed(self._count),
-        )
-        if self.omega is None:
-            return found
+            answers["v"] = mechanism.crank * self.omega
+        if not mechanism.slides:
+            return answers
 
-        found["c_m"] = mean = 2 * one.stroke * self.speed
-        found["c_work_m"], found["c_return_m"] = (
-            mean * (180.0 / one.phi_work),
-            mean * (180.0 / one.phi_return),
-        )
-        found["c_max"], found["c_min"] = fastest, slowest = self._times_omega(self._searched[0], 1)
-        if one.quick_return:
-            found["c_work_max"], found["c_return_max"] = (
-                fastest,
-                Extreme(-slowest.value, slowest.degrees),
-            )
-        found["b_max"], found["b_min"] = self._times_omega(self._searched[1], 2)
-        return found
+        pieces, (_, curvature, *_) = self._turn
+        answers["stroke"] = mechanism.stroke
+        answers["phi_b_zero"] = pieces.zeros(curvature).listed(self._count)
+        if self.omega is None:
+            return answers
+
+        # both strokes together take the time of a turn
+        mean = 2 * mechanism.stroke * self.speed
+        answers["c_m"] = mean
+        answers["c_work_m"] = mean * (180.0 / mechanism.phi_work)
+        answers["c_return_m"] = mean * (180.0 / mechanism.phi_return)
+        fastest, slowest = self._times_omega(self._searched[0], 1)
+        answers["c_max"], answers["c_min"] = fastest, slowest
+        if mechanism.quick_return:
+            answers["c_work_max"] = fastest
+            answers["c_return_max"] = Extreme(-slowest.value, slowest.degrees)
+        answers["b_max"], answers["b_min"] = self._times_omega(self._searched[1], 2)
+        return answers
 
     def roots_of_the_book(self) -> tuple[object, ...] | None:
         """Return where the acceleration of first order is zero, in degrees: cos φ = 2λ/(1 + √(1 + 8λ²)).
@@ -298,8 +293,12 @@ class Motion(Results):
         None where the book has none, and with the infinite rod, of which it is exact.
         """
         mechanism, lam = self.mechanism, self.mechanism.lam
-        offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
-        if offer is None or offer.factor(mechanism, CrankAngle.of(0.0)) is None or every(lam == 0):
+        factors = [
+            offer.factor(mechanism, CrankAngle.of(0.0))
+            for offer in mechanism.OFFERS
+            if offer.quantity.id == "b_book"
+        ]
+        if not factors or factors[0] is None or every(lam == 0):
             return None
         first = np.degrees(np.arccos(2 * lam / (1 + np.sqrt(1 + 8 * lam * lam))))
         roots = np.broadcast_to(np.stack((first, 360.0 - first), axis=-1), (self._count or 1, 2))
@@ -310,9 +309,13 @@ class Motion(Results):
     @cached_property
     def _offers(self) -> list[Offer]:
         """Columns that the mechanism offers with extremes in `kurbel motion`, where it has them."""
-        here = CrankAngle.of(45.0)
-        declared = [offer for offer in self.mechanism.OFFERS if "motion" in offer.quantity.extremes]
-        return [one for one in declared if one.factor(self.mechanism, here) is not None]
+        anywhere = CrankAngle.of(45.0)
+        offers = []
+        for offer in self.mechanism.OFFERS:
+            is_searched = "motion" in offer.quantity.extremes
+            if is_searched and offer.factor(self.mechanism, anywhere) is not None:
+                offers.append(offer)
+        return offers
 
     @cached_property
     def _turn(self) -> tuple[Pieces, Samples]:
@@ -322,21 +325,22 @@ class Motion(Results):
         """
 
         def sampled(pieces: Pieces) -> Samples:
-            mechanism = (
-                self.mechanism if self._count is None else taken(self.mechanism, pieces.machine)
-            )
+            mechanism = self.mechanism
+            if self._count is not None:
+                mechanism = taken(mechanism, pieces.machine)
             angle = CrankAngle.at_nodes(pieces)
             angle = angle._replace(rod=mechanism.rod_angle(angle))
-            offered = [offer.factor(mechanism, angle) for offer in self._offers]
-            found = (mechanism.slope(angle), mechanism.curvature(angle), *offered)
-            return [pieces.filled(one) for one in found if one is not None]
+            columns = [mechanism.slope(angle), mechanism.curvature(angle)]
+            for offer in self._offers:
+                factor = offer.factor(mechanism, angle)
+                if factor is not None:
+                    columns.append(factor)
+            return [pieces.filled(column) for column in columns]
 
         count = self._count or 1
         centres = every_dead_centre(self.mechanism, count, 360.0)
-        return refined(
-            Pieces.between(Angles(np.repeat(np.arange(count), 2), centres.ravel()), count, 360.0),
-            sampled,
-        )
+        ends = Angles(np.repeat(np.arange(count), 2), centres.ravel())
+        return refined(Pieces.between(ends, count, 360.0), sampled)
 
     @cached_property
     def _searched(self) -> list[Extremes]:
@@ -344,29 +348,37 @@ class Motion(Results):
         pieces, values = self._turn
         return pieces.extremes(values).each(partial(result, count=self._count))
 
-    def _times_omega(self, found: Extremes, order: int) -> Extremes:
+    def _times_omega(self, extremes: Extremes, order: int) -> Extremes:
         """Return extremes over a turn times ω^order."""
         # a power would raise where a product is inf, which is refused by name
         scale = math.prod((self.omega,) * order)
-        return Extremes(*(Extreme(one.value * scale, one.degrees) for one in found))
+        highest, lowest = extremes.largest, extremes.smallest
+        return Extremes(
+            Extreme(highest.value * scale, highest.degrees),
+            Extreme(lowest.value * scale, lowest.degrees),
+        )
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes over a turn of a column that the mechanism offers; None for what does not vary."""
-        number = next((n for n, one in enumerate(self._offers) if one.quantity.id == column), None)
-        if number is None or self.omega is None:
+        ids = [offer.quantity.id for offer in self._offers]
+        if column not in ids or self.omega is None:
             return None
-        found = self._times_omega(self._searched[2 + number], self._offers[number].omega)
-        return (
-            None
-            if every(found.largest.value - found.smallest.value <= 1e-14 * abs(found.largest.value))
-            else found
-        )
+        number = ids.index(column)
+        extremes = self._times_omega(self._searched[2 + number], self._offers[number].omega)
+        highest, lowest = extremes.largest.value, extremes.smallest.value
+        is_constant = every(highest - lowest <= 1e-14 * abs(highest))
+        return None if is_constant else extremes
+
+
+def _within_turn(degrees: Number) -> Number:
+    """Return an angle from −360° to 720° as one from 0° to below 360°."""
+    positive = where(degrees < 0, degrees + 360.0, degrees)
+    return where(positive >= 360.0, positive - 360.0, positive)
 
 
 def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:
     """Return the dead centres of machines in a cycle of so many degrees, (count, k), turn after turn."""
-    each = np.stack(
-        [np.broadcast_to(dead_centre, count) for dead_centre in mechanism.dead_centres()], axis=1
-    )
-    turns: Array = each[:, None, :] + np.arange(0.0, cycle, 360.0)[:, None]
+    centres = [np.broadcast_to(centre, count) for centre in mechanism.dead_centres()]
+    of_first_turn = np.stack(centres, axis=1)
+    turns: Array = of_first_turn[:, None, :] + np.arange(0.0, cycle, 360.0)[:, None]
     return turns.reshape(count, -1)

@@ -52,7 +52,7 @@ class Subject(NamedTuple):
     whose rod has several; whole: it is the whole machine; idle: why its table would have no results, so that people
     get a sentence instead. The rest is computed only for a report, and once: left_out, warnings, tables. part: its name
     in columns where `name` is a number that may mean another part of another machine; where: what it is next to, which
-    distinguishes parts of one number.
+    distinguishes parts of one number; columns_alone: its key values are left out, as they count by another angle.
     """
 
     name: str
@@ -67,6 +67,7 @@ class Subject(NamedTuple):
     idle: str = ""
     part: str = ""
     where: str = ""
+    columns_alone: bool = False
 
     @property
     def identity(self) -> str:
@@ -105,7 +106,7 @@ class Subject(NamedTuple):
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, object]]:
         """Yield its key values of a command in SI, without those that are printed only on request."""
-        if not self.results:
+        if not self.results or self.columns_alone:
             return
         for quantity, of, unless, _ in self.results.rows.key_values.values():
             is_printed = command in quantity.commands and command not in quantity.on_request

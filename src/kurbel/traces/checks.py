@@ -134,6 +134,28 @@ def _turns_in_pairs(reading: TraceReading) -> Doubt | None:
     )
 
 
+_RECORDED_TIMES = 0.05
+"""Relative difference of speeds from which on it is written as a factor."""
+
+
+def _recorded_speed(reading: TraceReading) -> Doubt | None:
+    """The period of the pressure shows the speed of a recording by time."""
+    trace = reading.trace
+    clock = trace.clock
+    if clock is None or clock.speed is None or not clock.is_off:
+        return None
+    size = f"{abs(clock.off):.2%} {'higher' if clock.off > 0 else 'lower'}"
+    if abs(clock.off) > _RECORDED_TIMES:
+        size = f"{1 + clock.off:.3g} times as high"
+    cured = reading.with_clock(clock._replace(recorded=clock.speed))
+    return Doubt(
+        f"its pressure repeats as at {60 * clock.speed:.6g} rpm (± {max(clock.error, 1e-5):.1g}), "
+        f"the recorded speed is {size}: its cycles are cut by the pressure, with p_i "
+        f"{in_bar(reading.p_i)}; write 'recorded_speed: {60 * clock.speed:.6g} rpm', or leave it out",
+        cured,
+    )
+
+
 def _wandering_cycles(reading: TraceReading) -> Doubt | None:
     """Cycles of one engine do not wander against each other."""
     laps = reading.each
@@ -147,12 +169,9 @@ def _wandering_cycles(reading: TraceReading) -> Doubt | None:
         return None
     side = "later" if wandered > 0 else "earlier"
     if trace.timed:
-        off = wandered / (trace.period * (len(laps) - 1))
-        change = "lower" if off > 0 else "higher"
         return Doubt(
-            f"the cycles wander {abs(wandered):.3g} deg {side} from the first to the last: was the "
-            "speed another, or not constant? If the file counts time: a 'recorded_speed' about "
-            f"{abs(1 / (1 + off) - 1):.2%} {change} brings both together"
+            f"the cycles wander {abs(wandered):.3g} deg {side} from the first to the last: the "
+            "speed was not constant; record the angle"
         )
     return Doubt(
         f"the cycles wander {abs(wandered):.3g} deg {side} from the first to the last: does the "
@@ -911,6 +930,7 @@ _WITH_FLANKS = frozenset((COMPRESSOR, STEAM, PUMP))
 _WITHOUT_SHAPE = frozenset((UNKNOWN, PUMP, STEAM, COMPRESSOR))
 
 CHECKS: tuple[Check, ...] = (
+    Check(EVERY, _recorded_speed),
     Check(EVERY, _turns_in_pairs),
     Check(EVERY, _wandering_cycles),
     Check(EVERY, _rounded_angles),

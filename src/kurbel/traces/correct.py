@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,10 @@ from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import refused
 from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.pieces import Angles, Pieces, refined
+from kurbel.traces.period import Clock
+
+if TYPE_CHECKING:
+    from kurbel.traces.heat import HeatLaw
 
 _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
@@ -56,8 +60,8 @@ class Trace(Indivisible):
     where it is not known; level: a line over the cycle is taken off so that it closes; pegging: where the level is
     known, as a text at the dead centre where the compression begins, the ambient; against: the file counts its angles
     against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the figures of the
-    file were multiplied by; timed: its angles come from times and a speed; suction, discharge: pressures in
-    Pa in the lines of a compressor, where they are known.
+    file were multiplied by; clock: how times became its angles; suction, discharge: pressures in
+    Pa in the lines of a compressor, where they are known; heat: by what its heat release is computed.
     Raises RuleError for samples that are no such cycle.
     """
 
@@ -73,9 +77,10 @@ class Trace(Indivisible):
     against: bool = False
     unit: float = 1.0
     scale: float = 1.0
-    timed: bool = False
+    clock: Clock | None = None
     suction: float | None = None
     discharge: float | None = None
+    heat: "HeatLaw | None" = None
     burns: ClassVar[bool] = False
     by_steam: ClassVar[bool] = False
     compresses: ClassVar[bool] = False
@@ -119,6 +124,16 @@ class Trace(Indivisible):
         return period if span >= period * (1 - _ROUNDING) else 0.0
 
     @property
+    def timed(self) -> bool:
+        """Whether its angles come from times."""
+        return self.clock is not None
+
+    @property
+    def is_free(self) -> bool:
+        """Whether a lap is a cycle of whatever machine: cut from times by the period of the pressure alone."""
+        return self.clock is not None and self.clock.is_free
+
+    @property
     def even(self) -> bool:
         """Whether the samples are at equal angles."""
         return at_equal_steps(self.angles)
@@ -126,6 +141,8 @@ class Trace(Indivisible):
     @property
     def cycles(self) -> tuple[str, ...]:
         """The working cycles that its laps are, or make in pairs."""
+        if self.is_free:
+            return tuple(CYCLES)
         joins = (self.period, 2 * self.period) if len(self.samples) > 1 else (self.period,)
         return tuple(cycle for cycle, turns in CYCLES.items() if 360.0 * turns in joins)
 
@@ -139,6 +156,8 @@ class Trace(Indivisible):
         """Return it with laps that are cycles of these degrees; a last turn that has no other is left out."""
         if self.period == period:
             return self
+        if self.is_free:
+            return replace(self, angles=self.angles * (period / self.period))
         angles = np.concatenate((self.angles[:-1], self.angles + self.period))
         return replace(self, angles=angles, samples=joined_in_pairs(self.samples), completed=True)
 

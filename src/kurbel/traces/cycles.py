@@ -16,6 +16,7 @@ from kurbel.declared.forms.values import out_of_size
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, NotANumber, RuleError
 from kurbel.traces.correct import period_of
+from kurbel.traces.period import Clock, Period, period_of_pressure
 from kurbel.traces.read import LIMITS, MOST_NUMBERS, Layout, read_table
 
 
@@ -23,20 +24,22 @@ class Laps(NamedTuple):
     """Laps of a trace in order: of one cycle each, or of one turn each if only the machine file decides the cycle.
 
     angles (n,) in degrees, rising over a period; values (m, n) of m laps; notes: what was corrected; completed: the
-    closing sample is a copy of the first, as the file has none.
+    closing sample is a copy of the first, as the file has none; clock: how times became angles.
     """
 
     angles: Array
     values: Array
     notes: tuple[str, ...] = ()
     completed: bool = False
+    clock: Clock | None = None
 
 
 class Recording:
     """Samples in the order of time, which one step after another puts in order and closes to laps.
 
     angles (n,) in degrees; values (k, n); rows (n,): of which row each is; notes: what was changed. place: of a row, as
-    a fault that lacks a message; most_turns: of the shaft in one cycle.
+    a fault that lacks a message; most_turns: of the shaft in one cycle; step: degrees from row to row of a lap, where
+    laps have angles of their own.
     """
 
     def __init__(
@@ -46,6 +49,7 @@ class Recording:
         self.values = values
         self.rows = np.arange(len(angles))
         self.most_turns = most_turns
+        self.step = 0.0
         self.notes: list[str] = []
         self._location_of_row = place
 
@@ -93,22 +97,70 @@ def samples_of_file(
     kind: of the values, pressure or torque; base: turns figures of the file into the base of their unit; against:
     angles count against the rotation; most_turns: of the shaft in one cycle.
     """
-    angles, figures, line = read_table(file, layout)
+    table = read_table(file, layout)
     with np.errstate(over="ignore"):  # what is beyond all numbers is refused with its line
-        values = base(figures)
+        values = base(table.figures)
 
     def location_of_row(row: int) -> Fault:
-        return Fault(("file",), line(row))
+        return Fault(("file",), table.line(row))
 
+    angles = table.angles
+    clock = None
+    period = None
+    if layout.is_timed:
+        if kind == "pressure" and np.isfinite(values).all():
+            period = period_of_pressure(angles, values[0])
+        clock = _clock(period, layout.recorded_speed)
+        speed = _cutting_speed(clock)
+        angles = angles * (360.0 * speed)
     try:
-        return whole_cycles(angles, values, location_of_row, kind, against, most_turns)
+        laps = whole_cycles(angles, values, location_of_row, kind, against, most_turns)
     except RuleError as error:
         # where angles come from times, a wrong speed or unit may be the cause
         (fault,) = error.faults
         if layout.recorded_speed is None or "angle_unit" in fault.message:
             raise
         message = f"{fault.message}; are 'recorded_speed' and 'angle_unit' (s or ms) right?"
+        if period is not None:
+            turning = 60 / period.seconds
+            message += (
+                f" Its pressure repeats after {period.seconds:.6g} s: "
+                f"'recorded_speed: {turning:.6g} rpm' in two strokes, {2 * turning:.6g} rpm in four"
+            )
         raise RuleError(fault._replace(message=message)) from None
+    return laps._replace(clock=clock)
+
+
+_MOST_OFF = 0.15
+"""By which a recorded speed may miss that of the pressure and be meant all the same."""
+
+
+def _clock(period: Period | None, recorded: float | None) -> Clock:
+    """Return the clock of a recording whose pressure repeats after a period; raises RuleError without any speed.
+
+    A period is one turn or two, of which the recorded speed in revolutions per second shows the number.
+    """
+    if recorded is None:
+        if period is None:
+            message = (
+                "times become angles by a speed, and the pressure has no clear period; "
+                "write 'recorded_speed: 1500 rpm', say"
+            )
+            raise RuleError(Fault(("angle_unit",), message))
+        return Clock(1 / period.seconds, period.error, None)
+    if period is None:
+        return Clock(None, 0.0, recorded)
+    turns = round(recorded * period.seconds)
+    if turns not in (1, 2) or abs(recorded * period.seconds / turns - 1) > _MOST_OFF:
+        return Clock(None, 0.0, recorded)
+    return Clock(turns / period.seconds, period.error, recorded)
+
+
+def _cutting_speed(clock: Clock) -> float:
+    """Return the speed in revolutions per second that cuts whole cycles: as recorded, unless the pressure differs."""
+    if clock.recorded is not None and not clock.is_off:
+        return clock.recorded
+    return clock.speed or clock.recorded or 0.0
 
 
 def whole_cycles(
@@ -280,6 +332,7 @@ def _lay_over_one_lap(recording: Recording) -> None:
         values = recording.values[:, :end].reshape(-1, count)
     else:
         shared, from_samples = _angles_of_all(angles[:end], bounds, lap)
+        recording.step = step
         columns = [np.interp(shared + offsets, angles, column) for column in recording.values]
         values = np.concatenate(columns)
 
@@ -394,7 +447,8 @@ def _closed(recording: Recording) -> Laps:
     # more is missing than the closing sample
     end = float(angles[0]) + period
     missing = end - float(angles[-1])
-    if missing > 1.5 * usual_step(angles):
+    step = max(usual_step(angles), recording.step)
+    if missing > 1.5 * step:
         recording.refuse_hole(-1, angles[-1], end, _unit_advice(span))
 
     completed = missing > 1e-9 * period
@@ -405,7 +459,7 @@ def _closed(recording: Recording) -> Laps:
 
     # smaller holes are reported
     notes = list(recording.notes)
-    wide = np.flatnonzero(np.diff(angles) > _WIDE * usual_step(angles))
+    wide = np.flatnonzero(np.diff(angles) > _WIDE * step)
     for i in wide[:5].tolist():
         notes.append(
             f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; "

@@ -20,6 +20,7 @@ from kurbel.arrays import Array
 from kurbel.declared.numerals import familiar
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, RuleError, refused
+from kurbel.traces.period import angles_of_pulses
 
 LARGEST_FILE = 64 * 2**20
 """Most bytes of a file; a million samples take about twenty million."""
@@ -47,7 +48,8 @@ class Layout(NamedTuple):
     """How a file of samples is laid out, by its keys.
 
     columns: those of what was measured, counted from 1; angle_step: degrees from row to row, where no column has
-    angles; recorded_speed: revolutions per second, for times; skip_rows: lines above the first figures.
+    angles; recorded_speed: revolutions per second, for times; pulse_column: of pulses of a wheel with so many teeth, of
+    which some are missing, instead of angles; skip_rows: lines above the first figures.
     """
 
     columns: tuple[int, ...] = (2,)
@@ -55,6 +57,9 @@ class Layout(NamedTuple):
     angle_unit: str = "deg"
     recorded_speed: float | None = None
     angle_step: float | None = None
+    pulse_column: int | None = None
+    teeth: int = 1
+    missing_teeth: int = 0
     skip_rows: int = 0
     delimiter: str = "comma"
     decimal: str = "point"
@@ -62,7 +67,14 @@ class Layout(NamedTuple):
     @property
     def wanted(self) -> tuple[int, ...]:
         """The columns that are read, that of the angles first."""
-        return self.columns if self.angle_step else (self.angle_column, *self.columns)
+        if self.angle_step:
+            return self.columns
+        return (self.pulse_column or self.angle_column, *self.columns)
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether the first column has times."""
+        return self.angle_unit in SECONDS and not self.angle_step and not self.pulse_column
 
     @property
     def between(self) -> str | None:
@@ -75,32 +87,37 @@ class Layout(NamedTuple):
         Where the same sign is between columns and in numbers only the marks tell them apart.
         """
 
-        def unquoted(found: re.Match[str]) -> str:
-            cell = found[1].strip().replace(DECIMALS[self.decimal], ".")
-            return (
-                found[0] if DELIMITERS[self.delimiter] in cell else cell
-            )  # without its marks it would be two
+        def unquoted(quoted: re.Match[str]) -> str:
+            cell = quoted[1].strip().replace(DECIMALS[self.decimal], ".")
+            would_split = DELIMITERS[self.delimiter] in cell
+            return quoted[0] if would_split else cell
 
         if '"' in text:
             text = _QUOTED.sub(unquoted, text)
-        return text if self.decimal in ("point", self.delimiter) else text.replace(",", ".")
+        if self.decimal in ("point", self.delimiter):
+            return text
+        return text.replace(",", ".")
 
     def read(self, line: str) -> tuple[list[str], int]:
         """Return the cells of a line, and the first wanted column that has no number; 0 for a row of figures."""
-        cells = [
-            cell.strip() for cell in self.tidied(line.partition("#")[0].strip()).split(self.between)
-        ]
-        bad = (
-            one for one in self.wanted if one > len(cells) or not _NUMBER.fullmatch(cells[one - 1])
-        )
-        return cells, next(bad, 0)
+        figures = line.partition("#")[0].strip()
+        cells = [cell.strip() for cell in self.tidied(figures).split(self.between)]
+        for column in self.wanted:
+            if column > len(cells) or not _NUMBER.fullmatch(cells[column - 1]):
+                return cells, column
+        return cells, 0
 
 
-def read_table(file: str, layout: Layout) -> tuple[Array, Array, Callable[[int], str]]:
-    """Return angles (n,) in degrees, figures (m, n) of m columns of a file, and what names the line of a sample.
+class Table(NamedTuple):
+    """What was read: angles (n,) in degrees, or times in seconds; figures (m, n) of m columns; line: names that of a row."""
 
-    Raises RuleError with the first line that cannot be read.
-    """
+    angles: Array
+    figures: Array
+    line: Callable[[int], str]
+
+
+def read_table(file: str, layout: Layout) -> Table:
+    """Return the columns of a file; raises RuleError with the first line that cannot be read."""
     text = text_of(file)
     if layout.delimiter == layout.decimal and '"' not in text:
         refused(
@@ -115,18 +132,25 @@ def read_table(file: str, layout: Layout) -> tuple[Array, Array, Callable[[int],
     if numbers.size > MOST_NUMBERS:
         refused(f"has more than {MOST_NUMBERS} numbers; thin them out{LIMITS}", "file")
 
+    first_row = 0
     if layout.angle_step:
         angles = np.asarray(np.arange(len(numbers)) * layout.angle_step, dtype=float)
-    elif layout.recorded_speed is not None:
-        angles = numbers[:, 0] * (360.0 * layout.recorded_speed * SECONDS[layout.angle_unit])
+    elif layout.pulse_column:
+        pulses = numbers[:, 0]
+        angles, kept = angles_of_pulses(pulses, layout.teeth, layout.missing_teeth)
+        numbers = numbers[kept]
+        first_row = kept.start
+    elif layout.is_timed:
+        angles = numbers[:, 0] * SECONDS[layout.angle_unit]
     else:
         angles = numbers[:, 0] * (math.degrees(1.0) if layout.angle_unit == "rad" else 1.0)
 
     def line(index: int) -> str:
-        number, _ = next(itertools.islice(_figure_lines(text, layout), index, None))
+        rows = itertools.islice(_figure_lines(text, layout), index + first_row, None)
+        number, _ = next(rows)
         return f"line {number}"
 
-    return angles, numbers[:, -len(layout.columns) :].T, line
+    return Table(angles, numbers[:, -len(layout.columns) :].T, line)
 
 
 @lru_cache(maxsize=4)
@@ -239,16 +263,18 @@ def _first_fault(text: str, layout: Layout) -> Fault:
         if not column:
             continue
         advice = _advice(text, number, cells, column, layout)
-        if len(cells) < max(layout.wanted):
-            row = f": {_shown(line)}" if _shown(line) else ""
-            return Fault(
-                ("file",), f"line {number} has no column {max(layout.wanted)}{row}{advice}"
-            )
+        last_column = max(layout.wanted)
+        if len(cells) < last_column:
+            shown_line = _shown(line)
+            row = f": {shown_line}" if shown_line else ""
+            return Fault(("file",), f"line {number} has no column {last_column}{row}{advice}")
+        # the cell as it is written, where that is certain
         as_written = line.split(layout.between)
-        shown = _shown(
-            as_written[column - 1].strip() if len(as_written) == len(cells) else cells[column - 1]
-        )
-        wrong = f"'{shown}' is no number" if shown else f"column {column} holds no number"
+        cell = cells[column - 1]
+        if len(as_written) == len(cells):
+            cell = as_written[column - 1].strip()
+        shown_cell = _shown(cell)
+        wrong = f"'{shown_cell}' is no number" if shown_cell else f"column {column} holds no number"
         return Fault(("file",), f"line {number}: {wrong}{advice}")
     return Fault(("file",), "its rows cannot be read as numbers")
 
@@ -257,7 +283,9 @@ def _shown(text: str) -> str:
     """Return a part of a file for a message, if figures could look like it; else ''."""
     if not _FIGURES.fullmatch(text):
         return ""
-    return " ".join(text.split()) if len(text) <= 40 else f"{' '.join(text[:40].split())}…"
+    if len(text) > 40:
+        return f"{' '.join(text[:40].split())}…"
+    return " ".join(text.split())
 
 
 def _advice(text: str, number: int, cells: list[str], column: int, layout: Layout) -> str:
@@ -265,34 +293,40 @@ def _advice(text: str, number: int, cells: list[str], column: int, layout: Layou
 
     number, cells: of the first line that is no row; column: the first that it lacks, or that holds no number.
     """
+    # which lines each layout reads; of those that read as many, one that reads the faulty line too
     lines = [line.partition("#")[0].strip() for line in text.split("\n", _TRIED)[:_TRIED]]
-    quoted = any('"' in line for line in lines)
-    delimiters = dict.fromkeys((layout.delimiter, "semicolon", "tab", "comma", "space"))
-    signs = itertools.product(delimiters, dict.fromkeys((layout.decimal, *DECIMALS)))
-    tried = [
-        layout._replace(delimiter=one, decimal=other)
-        for one, other in signs
-        if quoted or one != other
-    ]
-    if layout.angle_step:
-        tried = [one._replace(columns=columns) for one in tried for columns in (one.columns, (1,))]
-    rows = [[i for i, line in enumerate(lines) if line and not one.read(line)[1]] for one in tried]
-    # of layouts that read as many lines, one that reads the faulty line too
+    layouts = _similar_layouts(layout, '"' in "".join(lines))
+    rows_of_layouts = [_rows_read(lines, candidate) for candidate in layouts]
     faulty = text.split("\n", number)[number - 1].partition("#")[0].strip()
-    found = max(range(len(tried)), key=lambda i: (len(rows[i]), not tried[i].read(faulty)[1]))
-    begin = rows[found][0] if len(rows[found]) > 1 else 0
-    best = tried[found]._replace(skip_rows=begin if number <= begin else layout.skip_rows)
+
+    def merit(i: int) -> tuple[int, bool]:
+        _, bad_column = layouts[i].read(faulty)
+        return len(rows_of_layouts[i]), not bad_column
+
+    chosen = max(range(len(layouts)), key=merit)
+    rows = rows_of_layouts[chosen]
+    reads_rows = len(rows) > 1
+    first_row = rows[0] if reads_rows else 0
+    skip_rows = first_row if number <= first_row else layout.skip_rows
+    best = layouts[chosen]._replace(skip_rows=skip_rows)
+
+    # keys that read more lines
     cell = cells[column - 1] if column <= len(cells) else ""
-    if len(rows[found]) > 1 and best != layout:
+    if reads_rows and best != layout:
         written = f"; write {' and '.join(_differing_keys(best, layout))}"
-        if best._replace(skip_rows=layout.skip_rows) != layout:
+        skips_lines_only = best._replace(skip_rows=layout.skip_rows) == layout
+        if not skips_lines_only:
             return written
         if not _FIGURES.fullmatch(cell):  # of headings no cell is one of figures
             return f"{written} if it is a heading"
-    if rows[0] and rows[0][0] < number - 1:
+
+    # or what the line looks like
+    rows_as_given = rows_of_layouts[0]
+    if rows_as_given and rows_as_given[0] < number - 1:
         return "; leave such lines out, or correct them"
     if cell:
-        return _PLAIN if any(one.isdigit() for one in cell) else _NO_FIGURES
+        has_digit = any(character.isdigit() for character in cell)
+        return _PLAIN if has_digit else _NO_FIGURES
     if not any(map(_NUMBER.fullmatch, cells)):
         return _NO_FIGURES
     if len(cells) > 1 or layout.angle_step:
@@ -300,16 +334,41 @@ def _advice(text: str, number: int, cells: list[str], column: int, layout: Layou
     return "; if it has no angles, write 'pressure_column: 1' and 'angle_step: 0.5 deg', say"
 
 
-def _differing_keys(found: Layout, given: Layout) -> list[str]:
-    """Return the keys that make the given layout that which was found."""
-    now, before = found._asdict(), given._asdict()
-    written = [
-        f"'{key}: {now[key]}'"
-        for key in ("skip_rows", "delimiter", "decimal")
-        if now[key] != before[key]
-    ]
-    return (
-        written
-        if found.columns == given.columns
-        else [*written, f"'pressure_column: {found.columns[0]}'"]
-    )
+def _similar_layouts(layout: Layout, has_quotes: bool) -> list[Layout]:
+    """Return this layout, and those with other signs between columns and in numbers, or one column alone."""
+    delimiters = dict.fromkeys((layout.delimiter, "semicolon", "tab", "comma", "space"))
+    decimals = dict.fromkeys((layout.decimal, *DECIMALS))
+    layouts = []
+    for delimiter, decimal in itertools.product(delimiters, decimals):
+        if delimiter == decimal and not has_quotes:
+            continue
+        candidate = layout._replace(delimiter=delimiter, decimal=decimal)
+        layouts.append(candidate)
+        if layout.angle_step:
+            layouts.append(candidate._replace(columns=(1,)))
+    return layouts
+
+
+def _rows_read(lines: list[str], layout: Layout) -> list[int]:
+    """Return the numbers, from 0, of the lines that a layout reads as rows of figures."""
+    rows = []
+    for i, line in enumerate(lines):
+        if not line:
+            continue
+        _, bad_column = layout.read(line)
+        if not bad_column:
+            rows.append(i)
+    return rows
+
+
+def _differing_keys(layout: Layout, written_layout: Layout) -> list[str]:
+    """Return the keys that make the layout of the machine file into another one."""
+    new = layout._asdict()
+    old = written_layout._asdict()
+    keys = []
+    for key in ("skip_rows", "delimiter", "decimal"):
+        if new[key] != old[key]:
+            keys.append(f"'{key}: {new[key]}'")
+    if layout.columns != written_layout.columns:
+        keys.append(f"'pressure_column: {layout.columns[0]}'")
+    return keys

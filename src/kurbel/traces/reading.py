@@ -32,6 +32,7 @@ from kurbel.traces.lines import (
     flanks_of,
     goes_by_one_line,
 )
+from kurbel.traces.period import Clock
 
 FIRED = "fired engine"
 MOTORED = "motored engine"
@@ -290,6 +291,11 @@ class TraceReading:
     def with_clearance(self, clearance: float) -> "TraceReading":
         """Return it with another clearance."""
         trace = replace(self.trace, clearance=clearance)
+        return TraceReading(trace, self.setting, self.each, self.role)
+
+    def with_clock(self, clock: Clock) -> "TraceReading":
+        """Return it with another recorded speed."""
+        trace = replace(self.trace, clock=clock)
         return TraceReading(trace, self.setting, self.each, self.role)
 
     def with_pressures(self, each: Array) -> "TraceReading":

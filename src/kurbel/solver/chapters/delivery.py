@@ -488,7 +488,7 @@ def _friction(pipe: Pipe) -> Number:
     return pipe.friction_factor * pipe.length / (2 * pipe.diameter * _section(pipe) ** 2)
 
 
-def _vessel(vessel: Vessel, swing: Number, place: str) -> tuple[Number, Number]:
+def _vessel(vessel: Vessel, swing: Number, side: str) -> tuple[Number, Number]:
     """Return mean volume in m³ and swing of pressure of a vessel that takes a fluctuating volume in m³."""
     # V = ΔV (r + 1)/(2 (r − 1)), r = ((2 + δ)/(2 − δ))^(1/n)
     if vessel.pressure_swing is not None:
@@ -503,7 +503,7 @@ def _vessel(vessel: Vessel, swing: Number, place: str) -> tuple[Number, Number]:
         least_text = show(float(half), "volume")
         volume_text = show(volume, "volume")
         raise UsageError(
-            f"pump.{place}_pipe.vessel.volume: {volume_text} would empty; "
+            f"pump.{side}_pipe.vessel.volume: {volume_text} would empty; "
             f"it must be more than ΔV/2 = {least_text}"
         )
     # r = V_max/V_min of the volumes, to the power n of the pressures; of many machines NaN where it empties
@@ -781,8 +781,8 @@ class MachineDelivery:
             is_suction = words.get("is_suction", False)
             for state, end in ends:
                 if end.pipe == ("suction" if is_suction else "delivery"):
-                    given = _given_by(state, end, words.get("is_derivative", False))
-                    terms.append(-given if is_suction else given)
+                    own_flow = _given_by(state, end, words.get("is_derivative", False))
+                    terms.append(-own_flow if is_suction else own_flow)
             rates = pieces.filled(sum(terms))
             # rates of which the terms cancel at all angles are rounding
             sizes = sum(map(pieces.largest, terms))
