@@ -19,7 +19,8 @@ import numpy as np
 
 from kurbel.accuracy.linkages import motion_of
 from kurbel.accuracy.methods import Precise, largest_and_smallest, mp, mpf
-from kurbel.accuracy.textbook import DIGITS, STEPS, Textbook
+from kurbel.accuracy.references import Textbook
+from kurbel.accuracy.textbook import DIGITS, STEPS
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 

@@ -13,8 +13,15 @@ from kurbel.machine_file.events import located
 from kurbel.machine_file.reader import load_cases
 from kurbel.render import Look
 from kurbel.render.json_text import findings_json, findings_junit
-from kurbel.render.output import listing, look_at, refuse_overwriting, write_out
+from kurbel.render.output import (
+    listing,
+    look_at,
+    refuse_overwriting,
+    write_entries,
+    write_out,
+)
 from kurbel.report.commands import BROKEN
+from kurbel.shipped import file_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import provenance
 
@@ -71,6 +78,29 @@ def check_files(
     else:
         _write_findings(outcomes, format, look, file_name)
     return min((outcome.status for outcome in outcomes), key=_GRAVEST.index)
+
+
+def check_shipped(names: Sequence[str], file_name: str | None) -> int:
+    """Compare the expected figures of shipped machines, write a line for each, and return the exit status."""
+    entries = list[tuple[str, str]]()
+    statuses = [DONE]
+    for name in names:
+        outcome = _outcome(file_of(name), "", (), file_name)
+        statuses.append(outcome.status)
+        figures = []
+        for topic in outcome.checked.sections if outcome.checked else ():
+            figures += [entry for entry in topic.entries if entry.path[:1] == ("expect",)]
+        failing = [entry.what for entry in figures if entry.severity == "error"]
+        verdict = "PASS" if outcome.status == DONE else "FAIL"
+        count = {0: "no expected figure", 1: "1 expected figure"}
+        text = f"{verdict}  {count.get(len(figures), f'{len(figures)} expected figures')}"
+        if failing:
+            text += f", off: {', '.join(failing)}"
+        if outcome.error:
+            text += f"; {outcome.error}"
+        entries.append((name, text))
+    write_entries(entries, file_name)
+    return min(statuses, key=_GRAVEST.index)
 
 
 def _write_findings(
