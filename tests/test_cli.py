@@ -136,7 +136,7 @@ def test_quick_commands_import_nothing_heavy() -> None:
     assert result.returncode == 0, result.stderr
 
 
-def test_a_width_is_filled_where_it_is_asked_for(solved_once: None) -> None:
+def test_a_width_is_filled_where_it_is_requested() -> None:
     """COLUMNS in a pipe, --width everywhere; no line is longer, and no word is broken."""
     machine = str(CONFIGS["waterworks"])
     for arguments in (["table"], ["forces", machine, "--layout", "rows"], ["check", machine]):
@@ -216,7 +216,7 @@ SELECTED = b"First selection. All columns, angles and key values: kurbel forces 
 
 
 @POSIX_ONLY
-def test_a_low_terminal_shows_a_first_selection_and_says_how_to_see_all() -> None:
+def test_a_low_terminal_shows_a_first_selection_and_shows_how_to_see_all() -> None:
     shown = on_terminal("forces", WATERWORKS, columns=80, rows=33, NO_COLOR="1").decode()
     whole = process("forces", WATERWORKS, COLUMNS="80").stdout.decode()
     lines = [line.rstrip() for line in shown.splitlines()]
@@ -248,7 +248,7 @@ def test_on_24_lines_nothing_scrolls_away() -> None:
 
 @POSIX_ONLY
 @pytest.mark.parametrize("more", [["--all"], ["--columns", "P"], ["--step", "5"], ["--key-values"]])
-def test_what_is_asked_for_is_shown_on_a_low_terminal_too(more: list[str]) -> None:
+def test_what_is_requested_is_shown_on_a_low_terminal_too(more: list[str]) -> None:
     shown = on_terminal("forces", WATERWORKS, *more, columns=80, rows=24, NO_COLOR="1")
     plain = process("forces", WATERWORKS, *more, COLUMNS="80").stdout
     assert shown.replace(b"\r\n", b"\n").splitlines() == plain.splitlines()

@@ -168,9 +168,9 @@ PYTHON = [page for page in [README, *PAGES] if ">>>" in text_of(page)]
 )
 def test_python_of_a_page(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
-    found = doctest.testfile(str(page), module_relative=False, encoding="utf-8")
-    assert found.attempted
-    assert found.failed == 0
+    result = doctest.testfile(str(page), module_relative=False, encoding="utf-8")
+    assert result.attempted
+    assert result.failed == 0
 
 
 GENERATED = {
@@ -259,6 +259,6 @@ MODULES = [
 
 @law_of_each(MODULES)
 def test_examples_in_docstrings(module: str) -> None:
-    found = doctest.testmod(import_module(module))
-    assert found.attempted
-    assert found.failed == 0
+    result = doctest.testmod(import_module(module))
+    assert result.attempted
+    assert result.failed == 0

@@ -11,7 +11,7 @@ from representative import CONFIGS, few
 WATERWORKS = str(CONFIGS["waterworks"])
 
 
-def test_without_a_name_the_picture_that_says_most() -> None:
+def test_without_a_name_the_picture_that_shows_most() -> None:
     result = run("plot", WATERWORKS)
     assert result.exit_code == 0
     assert result.stdout.startswith("Waterworks engine, high-pressure side. Piston force\n")

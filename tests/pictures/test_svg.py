@@ -164,14 +164,14 @@ def test_labels_are_clear_of_each_other_and_of_curves(names: list[str]) -> None:
     ):
         for panel in (one for one in picture.panels if not one.plain):
             frame = frame_of(panel, {1: 660.0, 2: 293.0, 3: 170.0}[picture.across])
-            found = frame.labels(named=False)
-            assert not any(meet(one, other) for one, other in combinations(found, 2))
+            result = frame.labels(named=False)
+            assert not any(meet(one, other) for one, other in combinations(result, 2))
             named = [
                 mark for mark in panel.marks if mark.figure.name.symbol
             ]  # angles are where there is room
-            assert len(found) >= min(len(named), 12)
-            labels += len(found)
-            on_curves += sum(covered(frame, label) for label in found)
+            assert len(result) >= min(len(named), 12)
+            labels += len(result)
+            on_curves += sum(covered(frame, label) for label in result)
     assert labels > 100
     assert on_curves <= 0.01 * labels
 

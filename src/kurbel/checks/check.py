@@ -26,7 +26,8 @@ from kurbel.notes.left_out import (
     strength_left_out,
     turning_stages,
 )
-from kurbel.notes.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
+from kurbel.notes.machine_results import bearing_warnings
+from kurbel.notes.warnings import Note, as_far_as_solved, machine_notes
 from kurbel.solver.case import Case
 from kurbel.solver.drive import any_of
 from kurbel.solver.forces import CylinderForces

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from itertools import chain
 
 from kurbel.notes.left_out import left_out, strength_left_out
-from kurbel.notes.warnings import of_machine, rods_on_pin, shells
+from kurbel.notes.machine_results import rods_on_pin, shells
+from kurbel.notes.warnings import of_machine
 from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.stress import CrankshaftStrength, ThrowStrength
