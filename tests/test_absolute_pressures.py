@@ -10,8 +10,6 @@ from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 MACHINE = """
 speed: 240 rpm
 stroke: 300 mm
@@ -26,7 +24,7 @@ ABSOLUTE = MACHINE.format(counted="absolute", low="1 bar", high="7 bar")
 GAUGE = MACHINE.format(counted="gauge", low="-0.01325 bar", high="5.98675 bar")
 
 
-def test_programs_are_told_too() -> None:
+def test_programs_are_informed_too() -> None:
     (head, *_) = csv.reader(
         printed(
             "forces", "-", "--columns", "p_head", "--angles", "90", "-f", "csv", text=ABSOLUTE
@@ -38,7 +36,7 @@ def test_programs_are_told_too() -> None:
     ][0]
     assert parsed["columns"][1]["unit"] == "Pa abs"
     assert parsed["columns"][1]["values"] == pytest.approx([1e5], rel=1e-15)
-    (p_max,) = (one for one in parsed["key_values"] if one["id"] == "p_max")
+    (p_max,) = (key_value for key_value in parsed["key_values"] if key_value["id"] == "p_max")
     assert (p_max["unit"], p_max["value"]) == ("Pa abs", pytest.approx(7e5, rel=1e-15))
     assert Case(loads(ABSOLUTE)).cylinders[0]["p_max"].unit == "Pa abs"
 
@@ -53,7 +51,7 @@ def test_forces_and_differences_hang_on_no_zero() -> None:
 
 
 def test_places_count_as_the_file_does() -> None:
-    found = printed(
+    result = printed(
         "forces",
         "-",
         "--where",
@@ -64,7 +62,7 @@ def test_places_count_as_the_file_does() -> None:
         "csv",
         text=ABSOLUTE,
     )
-    assert float(found.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
+    assert float(result.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
 
 
 # units that say which zero they have, of ISO 80000-4 and of DIN 1314 before 1977

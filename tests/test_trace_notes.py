@@ -74,8 +74,8 @@ def other_end(digit: float, begin: float) -> tuple[Any, Any]:
     """From cycle to cycle 1 % at the dead centre, 0.05 bar in the gas exchange; or read by a coarse converter."""
     angles = begin + np.arange(0.0, 720.0, 0.5)
     share, other = (angles - begin) / 720, absolute(ENGINE._replace(inlet=0.97, outlet=1.1), angles)
-    found = (1 - share) * absolute(ENGINE, angles) + share * other
-    return angles, np.round(found / digit) * digit if digit else found
+    result = (1 - share) * absolute(ENGINE, angles) + share * other
+    return angles, np.round(result / digit) * digit if digit else result
 
 
 def shaken(seed: int, step: float) -> tuple[Any, Any]:
@@ -260,9 +260,9 @@ def test_what_is_wrong_is_seen_and_its_way_out_is_one(tmp_path: Path, name: str)
 )
 def test_what_it_would_change_is_the_true_figure(tmp_path: Path, samples: Any) -> None:
     """p_i as found and as it is, against the trapezoid rule by hand."""
-    true, found = indicated(FINE, late(0)), indicated(FINE, samples)
+    true, result = indicated(FINE, late(0)), indicated(FINE, samples)
     (note,) = notes_of(machine_text(written(tmp_path, FINE, samples)))
-    assert f"p_i is then {true:.4g} bar instead of {found:.4g} bar" in note
+    assert f"p_i is then {true:.4g} bar instead of {result:.4g} bar" in note
 
 
 @pytest.mark.parametrize("off", [-5.0, -2.0, 0.5, 2.0, 5.0])
@@ -276,7 +276,7 @@ def test_motored_traces_are_known_by_their_shape(tmp_path: Path, off: float) -> 
     )
 
 
-def test_four_strokes_told_as_two(tmp_path: Path) -> None:
+def test_four_strokes_reported_as_two(tmp_path: Path) -> None:
     """The angle begins anew in every turn and 'cycle: four-stroke' is forgotten: the turns differ in pairs."""
     _, each = cycles(ENGINE, 3, 0.5, noise=0.05)
     file = written(tmp_path, np.tile(np.arange(0.0, 360.0, 0.5), 6), each.ravel())
@@ -285,7 +285,7 @@ def test_four_strokes_told_as_two(tmp_path: Path) -> None:
     assert notes_of(machine_text(file, cycle=obeyed(note, "", "", "")[2])) == []
 
 
-def test_cycles_told_by_a_wrong_speed(tmp_path: Path) -> None:
+def test_cycles_known_by_a_wrong_speed(tmp_path: Path) -> None:
     """At 1500 rpm, told as 1515: the pressure shows the speed; with that nothing is left to say."""
     _, each = cycles(ENGINE, 12, 0.5, noise=0.05)
     file = written(tmp_path, np.arange(12 * 1440) * 0.5 / 9000, each.ravel())

@@ -1,4 +1,4 @@
-"""Oil films: figures of an independent solver, closed forms, a second integrator, and errors that these would catch."""
+"""Oil films: figures of another solver, closed forms, a second integrator, planted errors."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def test_largest_pressure_of_a_short_film(epsilon: float, angle: float, peak: fl
 
 
 def film_under(load: Callable[[np.ndarray], Any], turning: float, of_shape: FilmShape) -> OilFilm:
-    """Return the film under a load (n,) in N at crank angles in radians, of a shaft with 1 rad/s."""
+    """Return the film of a shaft with 1 rad/s under a load (n,) at crank angles in radians."""
     pieces = Pieces.between(NOWHERE, 1, 360.0)
     phi = np.radians(pieces.degrees)
     pressed = np.asarray(load(phi) + np.zeros_like(phi), complex)
@@ -180,7 +180,7 @@ def test_short_bearing_is_that_of_ocvirk_within_its_fit(ocvirk: float, fitted: f
     ("load", "gap"), [(1.0, 0.37794889757840894), (300.0, 0.009130088426614044)]
 )
 def test_squeezed_along_a_line(load: float, gap: float) -> None:
-    """Nothing turns: (1 − ε)^(−3/2) − (1 + ε)^(−3/2) = 3 K F/(π λ²) at the end of the half-turn that presses."""
+    """Nothing turns: (1 − ε)^(−3/2) − (1 + ε)^(−3/2) = 3 K F/(π λ²) after half a turn."""
     film = film_under(lambda phi: load * np.sin(phi), 0.0, shape(0.5, "short"))
     end = film.at_angles(np.array([180.0]), np.array([0j]))
     assert end
@@ -224,7 +224,10 @@ STEPS = 40
 
 
 def marched(bearing: Bearing, frame: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return crank angles, and ε by marching through a cycle in a frame, seen from the shell, from the orbit's start."""
+    """Return crank angles, and ε seen from the shell, marched through a cycle in a frame.
+
+    It starts at the orbit of the film.
+    """
     film = bearing.film
     assert film
     K = film.shape.mobility_number(bearing.omega)
@@ -271,7 +274,7 @@ def _marched(
     widths: np.ndarray,
     film_shape: FilmShape,
 ) -> np.ndarray:
-    """Return ε at the starts of steps; load: K F, and entrainment, (steps, stages), in the frame of ε."""
+    """Return ε at the starts of steps; load: K F, and entrainment, (steps, stages) each."""
     lam = film_shape.lam
     finite = film_shape.finite
     stages = DOP853.A
@@ -318,7 +321,7 @@ def test_orbit_by_a_second_integrator(name: str, bearing: str, frame: str) -> No
 
 
 def test_two_lands_are_two_bearings_of_half_the_load() -> None:
-    """Of the oil that they squeeze out, the half that flows into the groove stays in the bearing."""
+    """Of the oil that they squeeze out, half flows into the groove and stays in the bearing."""
     land = shape(0.4)
     both = land._replace(length=2 * land.length, lands=2)
 

@@ -22,7 +22,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from kurbel.accuracy.methods import Precise, integrals, largest_and_smallest, merged, mp, mpf
-from kurbel.accuracy.textbook import DIGITS, STEPS, Textbook, TextbookMachine, needed, unknown
+from kurbel.accuracy.references import Textbook, TextbookMachine, needed, unknown
+from kurbel.accuracy.textbook import DIGITS, STEPS
 from kurbel.arrays import Array
 from kurbel.machine import Machine
 

@@ -15,21 +15,17 @@ the rod's crosshead pin, Z that on the crank pin, τ the moment of weight and in
 pins. Friction in pins is that under the loads without it, as by the friction circles of the books.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict
-from functools import cache, partial
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.accuracy.cards import KNOWN_CARDS, CardProcess, Fractions, StrokeLine, drawn
-from kurbel.accuracy.efforts import diagram_of, knees_of
 from kurbel.accuracy.jets import Jet
 from kurbel.accuracy.linkages import RodMotion, Stance, TextbookMotion, motion_of
 from kurbel.accuracy.methods import (
-    Found,
     Precise,
-    by_gauss,
     integrals,
     merged,
     mp,
@@ -39,10 +35,8 @@ from kurbel.accuracy.methods import (
 from kurbel.accuracy.valves import events_of
 from kurbel.arrays import Array
 from kurbel.machine import CYCLES, Cylinder, Machine
-from kurbel.machine.cylinder import crank_lag
 from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.parts import Friction, GasOnRings, Piston
-from kurbel.machine.turning import Swing
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 
 DIGITS = 40
@@ -53,30 +47,6 @@ _FINEST = mpf(10) ** 33
 """Parts of a degree: angles that differ by less are equal."""
 IDLE = mpf("1e-9")
 """Work over the stroke in N, below which a piston neither drives nor is driven."""
-
-
-# what has no reference
-
-
-def taking_part(machine: Machine, quantity: str) -> tuple[Cylinder, ...]:
-    """Return the cylinders that a quantity belongs to: all, or the first one."""
-    return machine.cylinders if quantity == "ΔE" else machine.cylinders[:1]
-
-
-def unknown(machine: Machine, quantity: str) -> Iterator[str]:
-    """Yield what of a machine has no independent calculation of a quantity here."""
-    if quantity in "xcb":
-        return
-    for cylinder in taking_part(machine, quantity):
-        for piston in cylinder.pistons:
-            cards = piston.chambers.values()
-            if not all(isinstance(card, KNOWN_CARDS) for card in cards):
-                yield "a trace"
-        friction = cylinder.friction
-        if friction and friction.journals and machine.crankshaft is not None:
-            yield "journals that rub in the bearings of a crankshaft"
-    if quantity == "ΔE" and isinstance(machine.effort, Swing):
-        yield "an effort of which the swing of energy is given"
 
 
 # chambers
@@ -499,148 +469,3 @@ class TextbookCylinder:
 def _radius(coefficient: float | None, diameter: float | None) -> Precise:
     """Return the radius of a circle of friction in m, f d/2; 0 where nothing rubs."""
     return mpf(coefficient or 0.0) * mpf(diameter or 0.0) / 2
-
-
-# quantities
-
-
-NEEDED: dict[str, Callable[[Precise], Precise]] = {
-    "A_i": lambda state: state.slope * state.P_gas,
-    "T_max, T_min": lambda state: state.T,
-    "A_f": lambda state: sum(state.losses.values()) - state.slope * state.F_friction,
-    "ΔE": lambda state: state.M,
-}
-"""Quantity -> what it is the integral, the extremes or the swing of, from the columns of `Forces` or of the solver."""
-
-
-class Share(NamedTuple):
-    """What the torque of a cylinder counts for the losses (R p. 611-613), and the torque of its driving pistons."""
-
-    whole: float = 1.0
-    of_driving: float = 0.0
-
-
-class Addends(NamedTuple):
-    """What a quantity is a sum of: cylinders with the places of their cranks and their shares; diagrams with factors.
-
-    A cylinder is a function that returns its columns at angles of its own crank.
-    """
-
-    cylinders: Sequence[tuple[Callable[[Precise, Precise], Precise], Precise, Share]]
-    diagrams: Sequence[tuple[Callable[[Precise, Precise], Precise], float]] = ()
-
-
-def needed(quantity: str, addends: Addends, phi: Precise, within: Precise) -> Precise:
-    """Return what a quantity is computed from, at angles of crank 1."""
-    total = 0 * phi
-    for at, place, share in addends.cylinders:
-        state = at(phi - place, within - place)
-        total = total + share.whole * NEEDED[quantity](state)
-        if share.of_driving:
-            total = total + share.of_driving * state.P_driving * state.slope
-    for diagram, factor in addends.diagrams:
-        total = total + factor * diagram(phi, within)
-    return total
-
-
-class Textbook:
-    """The references of a machine, which share its cylinders; equal cylinders are one."""
-
-    def __init__(self, machine: Machine) -> None:
-        self.machine = machine
-        self._made: list[tuple[dict[str, Any], TextbookCylinder]] = []
-
-    def cylinder(self, cylinder: Cylinder) -> TextbookCylinder:
-        """Return the cylinder of the textbook for one of the file; where it is on the shaft makes no difference."""
-        values = asdict(cylinder)
-        for key in ("name", "crank_position", "bank_angle", "axial_position"):
-            del values[key]
-        for earlier, textbook_cylinder in self._made:
-            if earlier == values:
-                return textbook_cylinder
-        textbook_cylinder = TextbookCylinder(self.machine, cylinder)
-        self._made.append((values, textbook_cylinder))
-        return textbook_cylinder
-
-    def reference(self, quantity: str) -> Found:
-        """Return A_i and A_f in J, T_max and T_min in N, of the first cylinder, or ΔE in J."""
-        book = TextbookMachine(self, quantity)
-        return by_gauss(quantity, book.function(quantity), book.edges, STEPS)
-
-
-class TextbookMachine:
-    """Cylinders with the places of their cranks; edges: of all pieces of the cycle, at the angles of crank 1."""
-
-    def __init__(self, textbook: Textbook, quantity: str) -> None:
-        machine = textbook.machine
-        members = taking_part(machine, quantity)
-        self.cylinders = [
-            (textbook.cylinder(cylinder), mpf(crank_lag(cylinder, machine.cylinders[0])))
-            for cylinder in members
-        ]
-        turns = machine.revolutions if quantity == "ΔE" else self.cylinders[0][0].turns
-        self.cycle = 360 * turns
-        edges = [mpf(0), mpf(self.cycle)]
-        for cylinder, place in self.cylinders:
-            for turn in range(0, turns, cylinder.turns):
-                edges += [(edge + place + 360 * turn) % self.cycle for edge in cylinder.edges]
-
-        self.diagrams: list[tuple[Callable[[Precise, Precise], Precise], float]] = []
-        shares = [Share()] * len(members)
-        if quantity == "ΔE":
-            self._add_diagrams(machine)
-            edges += self._knees(machine)
-            shares = self._shares(mpf(machine.efficiency))
-        self.shares = shares
-        self.edges = merged(np.array(edges))
-
-    @property
-    def addends(self) -> Addends:
-        """What its quantity is a sum of."""
-        cylinders = [
-            (cylinder.at, place, share)
-            for (cylinder, place), share in zip(self.cylinders, self.shares)
-        ]
-        return Addends(cylinders, self.diagrams)
-
-    def _knees(self, machine: Machine) -> list[Precise]:
-        """Return where given efforts and loads bend."""
-        load = machine.load.diagram if machine.load else None
-        diagrams = [diagram for diagram in (machine.effort, load) if diagram is not None]
-        knees: list[Precise] = []
-        for diagram in diagrams:
-            assert not isinstance(diagram, Swing)
-            knees += knees_of(diagram, self.cycle)
-        return knees
-
-    def _add_diagrams(self, machine: Machine) -> None:
-        """Add a given effort with its losses, and a given load."""
-        effort, eta = machine.effort, machine.efficiency
-        if effort is not None:
-            assert not isinstance(effort, Swing)
-            torque = diagram_of(effort)
-            edges = merged(np.array([mpf(0), mpf(self.cycle), *knees_of(effort, self.cycle)]))
-            drives = integrals(np.frompyfunc(torque, 2, 1), edges, STEPS).sum() >= 0
-            self.diagrams.append((torque, eta if drives else 1 / eta))
-        if machine.load is not None and machine.load.diagram is not None:
-            self.diagrams.append((diagram_of(machine.load.diagram), -1.0))
-
-    def _shares(self, eta: Precise) -> list[Share]:
-        """Return the shares of the cylinders: of a machine that drives, driven pistons count in full."""
-        cylinders = [cylinder for cylinder, _ in self.cylinders]
-        if not any(cylinder.drives for cylinder in cylinders):
-            is_driven = any(cylinder.is_driven for cylinder in cylinders)
-            return [Share(1 / eta if is_driven else mpf(1))] * len(cylinders)
-        shares = []
-        for cylinder in cylinders:
-            share = Share()
-            if cylinder.drives and cylinder.is_driven:
-                share = Share(1.0, eta - 1)
-            elif cylinder.drives:
-                share = Share(eta)
-            shares.append(share)
-        return shares
-
-    def function(self, quantity: str) -> Callable[[Array, Array], Array]:
-        """Return what a quantity is computed from."""
-        return np.frompyfunc(partial(needed, quantity, self.addends), 2, 1)

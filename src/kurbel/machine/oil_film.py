@@ -20,7 +20,7 @@ _WIDEST = 1 / 20
 
 
 class Size(NamedTuple):
-    """A diameter or length of a pin that is given elsewhere, in m, and the key and record that give it."""
+    """A diameter or length of a pin in m, and the key and record that give it."""
 
     value: Number
     key: str
@@ -32,10 +32,13 @@ _ELSEWHERE = {
     "crosshead_pin": ("crosshead_pin_diameter", "", "crosshead_pin_length", ""),
     "journals": ("journal_diameter", "journal_diameter", "", "journal_length"),
 }
-"""Key -> keys of the diameter in `friction` and in `crankshaft`, and of the length in both; '' for none."""
+"""Key -> keys of the diameter in `friction` and `crankshaft`, and of the length in both, or ''."""
 
 
-_WARM = "give the 'viscosity' at that temperature, such as '20 mPa s', which oils of ISO VG 100 have at about 75 °C"
+_WARM = (
+    "give the 'viscosity' at that temperature, such as '20 mPa s', which oils of ISO VG 100 have "
+    "at about 75 °C"
+)
 _NO_KEYS = dict.fromkeys(("temperature", "oil_temperature", "grade", "oil"), _WARM)
 """Words that people try -> what to write instead."""
 
@@ -118,7 +121,8 @@ class OilFilms(Record):
     )
     theory: str = field(
         ("finite", "short"),
-        "Mobility of a film of finite length, or of a short bearing to compare with books: its films are too thick",
+        "Mobility of a film of finite length, or of a short bearing to compare with books: its "
+        "films are too thick",
         default="finite",
         absent="finite",
     )
@@ -143,7 +147,7 @@ class OilFilms(Record):
     def rules_beside(
         self, shaft: Crankshaft | None, frictions: Iterable[Friction | None]
     ) -> Iterator[Rule]:
-        """Yield the rules on sizes of bearings, some of which `crankshaft` or `friction` may give."""
+        """Yield the rules on sizes of bearings, which `crankshaft` or `friction` may give."""
         records: list[tuple[str, Record]] = [
             ("friction", friction) for friction in frictions if friction
         ]
@@ -151,13 +155,13 @@ class OilFilms(Record):
             records.append(("crankshaft", shaft))
         for key, bearing in self.bearings.items():
             in_friction, in_shaft, length_in_friction, length_in_shaft = _ELSEWHERE[key]
-            diameters = list(_given(records, in_friction, in_shaft))
-            lengths = list(_given(records, length_in_friction, length_in_shaft))
+            diameters = list(_sizes_in(records, in_friction, in_shaft))
+            lengths = list(_sizes_in(records, length_in_friction, length_in_shaft))
             for rule in _rules_of(bearing, diameters, lengths):
                 yield rule.below(key)
 
 
-def _given(
+def _sizes_in(
     records: Iterable[tuple[str, Record]], in_friction: str, in_shaft: str
 ) -> Iterator[Size]:
     """Yield the sizes with these keys that records give."""
@@ -186,8 +190,8 @@ def _rules_of(bearing: FilmBearing, diameters: list[Size], lengths: list[Size]) 
         diameter = diameters[0].value
     if diameter is not None:
         wide = (
-            "a radial clearance of {clearance:length} is too much for a diameter of {diameter:length}; "
-            "usual is about 1/2000 of it"
+            "a radial clearance of {clearance:length} is too much for a diameter of "
+            "{diameter:length}; usual is about 1/2000 of it"
         )
         numbers = {"clearance": bearing.clearance, "diameter": diameter}
         yield Rule("clearance", bearing.clearance >= _WIDEST * diameter, wide, numbers)

@@ -129,11 +129,9 @@ def read_values(origin: Origin, reading: Reading) -> ReadMapping:
         assert isinstance(mapping, ReadMapping)
         return mapping
     # faults of overrides have no position in the file
-    of_overrides: list[Fault] = []
-    of_file: list[Fault] = []
-    for fault in reading.faults[len(faults_of_yaml) :]:
-        fault = with_override(fault, overrides)
-        (of_overrides if fault.override else of_file).append(fault)
+    others = [with_override(fault, overrides) for fault in reading.faults[len(faults_of_yaml) :]]
+    of_overrides = [fault for fault in others if fault.override]
+    of_file = [fault for fault in others if not fault.override]
     raise origin.error(*faults_of_yaml, *of_overrides, *located(origin.text, of_file))
 
 

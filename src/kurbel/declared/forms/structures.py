@@ -252,7 +252,8 @@ def key_places(
         return
     for name, inner in form.parts:
         if isinstance(inner, Inline):
-            yield from key_places(inner, path, inner.item if inner.unless else words)
+            inner_words = inner.item if inner.unless else words
+            yield from key_places(inner, path, inner_words)
             continue
         if not name:
             yield from key_places(inner, path, words)

@@ -474,7 +474,9 @@ class Points(Form):
         self._pattern = f"[{', '.join(names)}]"
         sample = "[[0, 1], [1, 2]]" if length == 2 else "[[1, 20, -5]]"
         # the schema
-        number: Schema = {"type": ["number", "string"] if ratio else "number"}
+        number: Schema = {"type": "number"}
+        if ratio:
+            number["type"] = ["number", "string"]
         point = {"type": "array", "items": number, "minItems": length, "maxItems": length}
         schema = {"type": "array", "items": point, "minItems": least, "maxItems": MOST_POINTS}
         expected = f"a list of {self._called}s [{self._pattern}, …]"

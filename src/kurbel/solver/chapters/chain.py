@@ -500,7 +500,7 @@ class Modes:
         Those of the elastic modes are the first numbers below which there are so many modes, to the last digit.
         """
         guessed = self._guessed()
-        found = guessed.copy()
+        frequencies = guessed.copy()
         # a singular value is known to a few units in the last place of the largest one
         margin = np.minimum(_LAST_PLACES * guessed[-1] / guessed, 0.5)
         low, high = guessed / (1 + margin), guessed * (1 + margin)
@@ -512,8 +512,8 @@ class Modes:
             tried[-1] = high
             has_more = self._below(tried.ravel()).reshape(tried.shape) > left
             first = has_more.argmax(axis=0)
-            places = np.arange(len(left))
-            inner_low, inner_high = tried[first - 1, places], tried[first, places]
+            indices = np.arange(len(left))
+            inner_low, inner_high = tried[first - 1, indices], tried[first, indices]
             # one that does not hold it is widened
             is_outside = has_more[0] | ~has_more[-1]
             margin = np.where(is_outside, 100 * margin, margin)
@@ -521,9 +521,9 @@ class Modes:
             high = np.where(is_outside, guessed[left] * (1 + margin), inner_high)
             # until nothing is between its ends
             is_found = ~is_outside & (np.nextafter(low, high) == high)
-            found[left[is_found]] = high[is_found]
+            frequencies[left[is_found]] = high[is_found]
             left, low, high, margin = (row[~is_found] for row in (left, low, high, margin))
-        return found if self.chain.is_held else np.append(0.0, found)
+        return frequencies if self.chain.is_held else np.append(0.0, frequencies)
 
     def _guessed(self) -> Array:
         """Return the elastic natural frequencies about, singular values of K^½ J^{−½}, inertias lumped."""
