@@ -4,7 +4,7 @@ A line of the table is a case: a name, the text of a machine file, command and k
 column@degrees, what is expected, and by how many units of the last place a value may miss it. Of `find` and `sweep` the
 range or the values of a key come before ` | `, behind it what is wanted, or a key value and the number of its row.
 Expected are `reference`, the value of the textbook in mpmath's numbers; a number, from a formula in tests/accuracy;
-`left out`; or an exit status and words of the message. MANY_POINTS in a machine is the line of a card, see `fine_line`.
+`left out`; or an exit status and words of the message. MANY_POINTS in a machine is the line of a card, MANY_SAMPLES a trace.
 """
 
 import csv
@@ -73,10 +73,17 @@ def all_cases() -> list[Probe]:
 
 
 def fine_line() -> str:
-    """Return a line of a card with 10 001 points: p = 1 + 8 (1 − z)², z from 0 to 1."""
-    count = 10_000
+    """Return a line of a card with 100 001 points: p = 1 + 8 (1 − z)², z from 0 to 1."""
+    count = 100_000
     points = (f"[{k / count!r}, {1 + 8 * (1 - k / count) ** 2!r}]" for k in range(count + 1))
     return f"[{', '.join(points)}]"
+
+
+def fine_trace() -> str:
+    """Return 100 001 samples of a trace over one turn: p = 5 + 4 sin φ."""
+    step = 2 * math.pi / 100_000
+    samples = (f"[{0.0036 * k!r}, {5 + 4 * math.sin(step * k)!r}]" for k in range(100_001))
+    return f"[{', '.join(samples)}]"
 
 
 def verdicts(
@@ -93,6 +100,8 @@ def verdicts(
         text = case.machine.replace("\\n", "\n")
         if "MANY_POINTS" in text:
             text = text.replace("MANY_POINTS", fine_line())
+        if "MANY_SAMPLES" in text:
+            text = text.replace("MANY_SAMPLES", fine_trace())
         begin = time.perf_counter()
         try:
             machine = loads(text)
