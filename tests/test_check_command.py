@@ -42,7 +42,8 @@ def test_a_limit_passed_in_magnitude_by_the_other_sign_is_reported() -> None:
 
 # findings for programs
 
-FINDING = ["file", "line", "column", "key", "message", "severity"]
+PLACE = ["file", "line", "column", "key", "message", "severity"]
+FINDING = [*PLACE, "id", "scope", "value", "bound", "unit", "margin", "verdict", "case"]
 
 
 def found_as_json(text: str, *arguments: str) -> tuple[int, dict[str, Any]]:
@@ -149,9 +150,7 @@ def test_a_check_as_junit(tmp_path: Path) -> None:
 def test_faults_of_the_file_are_findings_too(tmp_path: Path) -> None:
     status, parsed = found_as_json("speed: 60\ncrank: 400 mm\nrd: 2 m\n")
     assert (status, parsed["machine"]) == (2, None)
-    assert [
-        tuple(one[key] for key in FINDING if key != "message") for one in parsed["findings"]
-    ] == [
+    assert [tuple(one[key] for key in PLACE if key != "message") for one in parsed["findings"]] == [
         ("<stdin>", 1, 8, "speed", "error"),
         ("<stdin>", 3, 1, "rd", "error"),
     ]
@@ -315,3 +314,63 @@ def test_check_lists_the_events_of_a_slide_valve() -> None:
         "release at 90 % (143.1 deg), compression 10 % before the dead centre (323.1 deg)\n"
     ) in printed.stdout
     assert "valve" not in run("check", str(CONFIGS["locomotive"])).stdout
+
+
+LIMITED = """
+speed: 60 rpm
+stroke: 800 mm
+rod: infinite
+limits: {c_max: 3 m/s, stroke: 0.7 m}
+expect: {v: 2.5 m/s ± 0.1 m/s}
+cases: [{name: fast, set: {speed: 75 rpm}}]
+"""
+"""c_max = v = R ω: 2.513274 m/s at 60, 3.141593 m/s at 75 per minute."""
+
+
+def test_json_has_every_verdict_with_its_figures_and_its_margin() -> None:
+    checked = run("check", "-", "-f", "json", text=LIMITED)
+    assert checked.exit_code == 1
+    findings = json.loads(checked.stdout)["findings"]
+    figures = {(row["id"], row["case"]): row for row in findings if row["verdict"]}
+    v = 0.8 * math.pi
+    c_max = figures["c_max", ""]
+    assert (c_max["scope"], c_max["unit"], c_max["verdict"]) == ("cylinder 1", "m/s", "PASS")
+    assert (c_max["value"], c_max["bound"]) == (pytest.approx(v), 3.0)
+    assert c_max["margin"] == pytest.approx((3 - v) / 3)
+    fast = figures["c_max", "fast"]
+    assert (fast["verdict"], fast["margin"]) == ("FAIL", pytest.approx((3 - 1.25 * v) / 3))
+    assert figures["stroke", ""]["margin"] == pytest.approx(-0.1 / 0.7)
+    expected = figures["v", ""]
+    assert expected["bound"] == [pytest.approx(2.4), pytest.approx(2.6)]
+    assert expected["margin"] == pytest.approx((2.6 - v) / 2.6)
+    others = [row for row in findings if not row["verdict"]]
+    assert others
+    assert all(row["value"] is row["bound"] is row["margin"] is None for row in others)
+
+
+def test_margins_of_limits_in_all_load_cases_are_a_table() -> None:
+    lines = run("check", "-", text=LIMITED).stdout.splitlines()
+    start = lines.index("Margins to the limits")
+    assert [line.split() for line in lines[start + 1 : start + 4]] == [
+        ["machine", "fast"],
+        ["c_max", "+16.2", "%", "-4.7", "%"],
+        ["stroke", "-14.3", "%", "-14.3", "%"],
+    ]
+    without_cases = LIMITED[: LIMITED.index("cases")]
+    assert "Margins" not in run("check", "-", text=without_cases).stdout
+
+
+def test_a_quiet_check_prints_what_fails() -> None:
+    quiet = run("check", "-", "--quiet", text=LIMITED)
+    assert quiet.exit_code == 1
+    names = [line.split(":")[1].strip() for line in quiet.stdout.splitlines()]
+    assert names == ["stroke", "c_max, fast", "stroke, fast", "v, fast"]
+    good = run("check", str(CONFIGS["waterworks"]), "-q")
+    assert (good.exit_code, good.stdout) == (0, "")
+
+
+def test_what_is_left_out_is_no_test_of_junit() -> None:
+    text = run("check", "-", "-f", "junit", text=LIMITED).stdout
+    assert "left out" in run("check", "-", text=LIMITED).stdout
+    names = [case.get("name") for case in ElementTree.fromstring(text).iter("testcase")]
+    assert names == ["c_max", "stroke", "c_max, fast", "stroke, fast", "v", "v, fast"]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from indicated import Engine, absolute, columns_file, cycles, indicated
+from indicated import Engine, absolute, columns_file, cycles, fraction, indicated
 from kurbel.machine_file import loads
 from kurbel.mechanisms.setting import Setting
 from kurbel.mechanisms.slider_crank import SliderCrank
@@ -125,6 +125,17 @@ def test_good_traces_are_not_accused(tmp_path: Path, name: str) -> None:
     angles, samples, keys = GOOD[name]
     cycle = "two-stroke" if np.ptp(angles) < 361 else "four-stroke"
     assert notes_of(machine_text(written(tmp_path, angles, samples), keys, cycle=cycle)) == []
+
+
+def test_burnt_gas_may_expand_with_a_smaller_exponent(tmp_path: Path) -> None:
+    """1.38 and 1.26, as of air and of burnt gas without any loss of heat: no dead centre is off."""
+    engine = ENGINE._replace(exponent=1.38)
+    phi = np.remainder(FINE + 360, 720) - 360
+    volume = fraction(phi) + engine.clearance
+    at_60 = float(fraction(60.0)) + engine.clearance
+    expands = (phi > 60) & (phi < 150)
+    pressures = absolute(engine, FINE) * np.where(expands, (volume / at_60) ** 0.12, 1.0)
+    assert notes_of(machine_text(written(tmp_path, FINE, pressures), RATIO)) == []
 
 
 def obeyed(note: str, keys: str, pressures: str, cycle: str) -> tuple[str, str, str]:

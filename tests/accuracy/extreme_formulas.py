@@ -51,15 +51,17 @@ def of_cards() -> Formulas:
     stroke = mpf(0.8)
     steam = (high * cut_off + expansion - low) * stroke * bore_area(0.45)
 
-    # a card of 10 001 points: p = 1 + 8 (1 − z)² bar at z = k/10 000, back at 1 bar; trapezia
-    count = 10_000
+    # a card of 100 001 points: p = 1 + 8 (1 − z)² bar at z = k/100 000, back at 1 bar; trapezia
+    count = 100_000
     squares = mpf(
         sum(2 * k * k for k in range(count)) + count * count
     )  # both ends of every trapezium
     fine = 8e5 * squares / (2 * mpf(count) ** 3) * stroke * bore_area(0.45)
     return {
         ("steam, exponent 1 + 2e-16", "forces work"): steam,
-        ("card of 1e4 points", "forces work"): fine,
+        ("card of 1e5 points", "forces work"): fine,
+        # p = 5 + 4 sin φ bar with an infinite rod: A R ∮ 4 sin² φ dφ
+        ("trace of 1e5 points", "forces work"): 4e5 * mp.pi * mpf(0.4) * bore_area(0.45),
     }
 
 

@@ -303,8 +303,8 @@ def errors(values: Array, truth: Array) -> tuple[float | None, float | None]:
 
 
 def timed(run: Callable[[], object], quick: bool) -> tuple[float, float]:
-    """Return the median and the least time in ms of 15 runs, or those of 0.1 s (quick: of 5, or of 0.05 s)."""
-    most, limit = (5, 50) if quick else (15, 100)
+    """Return the median and the least time in ms of 15 runs, or those of 0.06 s (quick: of 5, or of 0.05 s)."""
+    most, limit = (5, 50) if quick else (15, 60)
     times: list[float] = []
     while len(times) < most and sum(times) < limit:
         begin = time.perf_counter()

@@ -60,8 +60,11 @@ def check_files(
     format: str,
     file_name: str | None,
     width: int | None,
+    quiet: bool = False,
 ) -> int:
     """Check machine files, write what is found as `table`, `json` or `junit`, and return the exit status.
+
+    quiet: of a table only limits and expectations that FAIL.
 
     Raises UsageError where the output would overwrite what is read, and the error of an only file.
     """
@@ -69,7 +72,7 @@ def check_files(
     outcomes = [_outcome(file, case_name, overrides, file_name) for file in files]
     look = look_at(file_name, Look(width=width))
     if format == "table":
-        write_out(_as_text(outcomes, look), file_name)
+        write_out(_as_text(outcomes, look, quiet), file_name)
         for outcome in outcomes:
             if outcome.error and len(files) == 1:
                 raise outcome.error
@@ -148,10 +151,19 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
     return Outcome(file, joined, machine, results)
 
 
-def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
-    """Yield the listing of every machine that could be read; of several each after the name of its file."""
+def _as_text(outcomes: Sequence[Outcome], look: Look, quiet: bool) -> Iterator[str]:
+    """Yield the listing of every machine that could be read; of several each after the name of its file.
+
+    quiet: what FAILs alone, a line each.
+    """
     for number, outcome in enumerate(outcomes):
         if outcome.checked is None:
+            continue
+        if quiet:
+            for topic in outcome.checked.sections:
+                for entry in topic.entries:
+                    if entry.severity == "error":
+                        yield f"{look.text(f'{outcome.file}: {entry.what}: {entry.text}')}\n"
             continue
         topics = []
         for topic in outcome.checked.shown_once:

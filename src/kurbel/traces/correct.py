@@ -405,7 +405,8 @@ def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
 # the straight lines between the samples. Otherwise the integral of those straight lines, by a rule exact to rounding.
 
 _DENSE = 600
-"""Number of breaks in a cycle above which its pieces are short enough for few nodes."""
+_DENSEST = 20_000
+"""Numbers of breaks in a cycle above which its pieces are short enough for few nodes, and for the fewest."""
 
 
 def by_angle(setting: Setting, derivative: Callable[[CrankAngle], Number], degrees: Array) -> Array:
@@ -434,7 +435,11 @@ def by_straight_lines(
     cycle = float(along[-1])
     turns = np.add.outer(setting.mechanism.dead_centres(), np.arange(0.0, cycle, 360.0)).ravel()
     breaks = np.append(along, turns - angles[0])
-    nodes = 16 if len(breaks) < _DENSE else 10
+    nodes = 16
+    if len(breaks) > _DENSE:
+        nodes = 10
+    if len(breaks) > _DENSEST:
+        nodes = 4
     whole = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
     pieces, (slopes,) = refined(
         whole, lambda some: by_angle(setting, slope, some.degrees + angles[0])[None]
