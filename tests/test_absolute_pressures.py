@@ -108,3 +108,22 @@ def test_units_that_say_another_zero_than_the_machine_are_refused(unit: str, for
         loads(written_in(unit, "gauge" if counted == "absolute" else "absolute", form))
     assert f"'pressures: {counted}'" in str(caught.value)
     assert unit in str(caught.value)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("unit", ZEROED)
+def test_units_that_all_name_their_zero_need_no_key(unit: str, form: str) -> None:
+    counted, size = ZEROED[unit]
+    text = written_in(unit, counted, form).replace(f"pressures: {counted}, ", "")
+    (cylinder,) = Case(loads(text)).cylinders
+    over = 5 * size - (1e5 if counted == "absolute" else 0)
+    assert cylinder.at([90.0]).P[0] == pytest.approx(over * math.pi / 4 * 0.45**2, rel=1e-12)
+
+
+def test_units_of_which_one_does_not_name_its_zero_are_refused() -> None:
+    """Of 5 bara and 1 bar the second may be either."""
+    with pytest.raises(MachineFileError) as caught:
+        loads(
+            f"{SINGLE_ACTING}indicator: {{head_end: {{constant: {{expansion: 5 bara, compression: 1 bar}}}}}}"
+        )
+    assert "'pressures: absolute'" in str(caught.value)

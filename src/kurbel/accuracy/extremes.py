@@ -50,10 +50,9 @@ class Verdict(NamedTuple):
     @property
     def badness(self) -> tuple[bool, float]:
         """What is larger for a worse verdict: failed, and the share of what is allowed."""
-        return (
-            not self.passed,
-            -1.0 if self.ulp is None or not self.allowed else self.ulp / self.allowed,
-        )
+        if self.ulp is None or not self.allowed:
+            return not self.passed, -1.0
+        return not self.passed, self.ulp / self.allowed
 
     @property
     def passed(self) -> bool:
@@ -102,22 +101,25 @@ def verdicts(
             text = text.replace("MANY_POINTS", fine_line())
         if "MANY_SAMPLES" in text:
             text = text.replace("MANY_SAMPLES", fine_trace())
+
+        # the program on the text
+        expected = case.expected
+        missed = None
         begin = time.perf_counter()
         try:
             machine = loads(text)
             value = compute(machine, case.asked)
         except KurbelError as error:
+            spent = time.perf_counter() - begin
             observed, passed = _refused(case, error)
-            expected, missed = case.expected, None
-            spent = time.perf_counter() - begin
         except Exception as error:
-            observed, passed = f"fault: {type(error).__name__}: {error}", False
-            expected, missed = case.expected, None
             spent = time.perf_counter() - begin
+            observed = f"fault: {type(error).__name__}: {error}"
+            passed = False
         else:
+            # its answer against the reference
             spent = time.perf_counter() - begin
             observed = "left out" if value is None else repr(value)
-            expected, missed = case.expected, None
             passed = observed == expected
             if case.ulp:
                 textbook = textbooks.setdefault(text, Textbook(machine))
@@ -125,9 +127,8 @@ def verdicts(
                 passed = missed is not None and missed <= float(case.ulp)
         allowed = None if missed is None else float(case.ulp)
         verdict = "passed" if passed else "FAILED"
-        yield Verdict(
-            case.case, case.asked, expected, observed, verdict, missed, allowed, 1e3 * spent
-        )
+        names = (case.case, case.asked, expected, observed, verdict)
+        yield Verdict(*names, missed, allowed, 1e3 * spent)
 
 
 def _refused(case: Probe, error: KurbelError) -> tuple[str, bool]:
@@ -141,29 +142,40 @@ def _refused(case: Probe, error: KurbelError) -> tuple[str, bool]:
 
 def _missed(case: Probe, textbook: Textbook, answer: float | None) -> tuple[str, float | None]:
     """Return the expected value, and the error of an answer in units of the last place."""
-    with mp.workdps(2 * DIGITS if case.asked.startswith("motion") else DIGITS):
-        truth = exact(textbook, case.asked) if case.expected == "reference" else mpf(case.expected)
-        missed = None if answer is None else abs(answer - truth) / math.ulp(float(truth))
-        return mp.nstr(truth, 20), None if missed is None or mp.isnan(missed) else float(missed)
+    digits = 2 * DIGITS if case.asked.startswith("motion") else DIGITS
+    with mp.workdps(digits):
+        if case.expected == "reference":
+            truth = exact(textbook, case.asked)
+        else:
+            truth = mpf(case.expected)
+        expected = mp.nstr(truth, 20)
+        if answer is None or math.isnan(answer):
+            return expected, None
+        return expected, float(abs(answer - truth) / math.ulp(float(truth)))
+
+
+_OF_FORCES = {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}
+"""Ids of key values -> their quantities."""
 
 
 def exact(textbook: Textbook, asked: str) -> Precise:
     """Return a requested quantity by the textbook, in SI, with the precision set in mpmath."""
     machine = textbook.machine
     command, _, quantity = asked.partition(" ")
-    name, _, at = quantity.partition("@")
+    name, _, angle = quantity.partition("@")
     if command != "motion":
-        needs = {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}.get(name, "T_max, T_min")
-        found = textbook.reference(needs)
-        return found[("T_max", "T_min").index(name)] if isinstance(found, tuple) else found
-    motion, omega = (
-        motion_of(machine.cylinders[0].mechanism),
-        2 * mp.pi * mpf(machine.speed or 0.0),
-    )
+        if name in _OF_FORCES:
+            return textbook.reference(_OF_FORCES[name])
+        largest, smallest = textbook.reference("T_max, T_min")
+        return largest if name == "T_max" else smallest
+
+    motion = motion_of(machine.cylinders[0].mechanism)
+    omega = 2 * mp.pi * mpf(machine.speed or 0.0)
     if name == "stroke":
         return motion.stroke
     if name == "c_max":
         slopes = np.frompyfunc(lambda phi, _: motion.at(phi).slope, 2, 1)
-        return largest_and_smallest(slopes, motion.ends[:2], STEPS)[0] * omega
+        largest, _ = largest_and_smallest(slopes, motion.ends[:2], STEPS)
+        return largest * omega
     order = "xcb".index(name)
-    return motion.at(mpf(float(at)))[order] * omega**order
+    return motion.at(mpf(float(angle)))[order] * omega**order

@@ -54,7 +54,9 @@ class Problem:
     """The equation in floats; cycle in degrees."""
 
     def __init__(self, equation: ShaftEquation, fits: Fits, cycle: int) -> None:
-        self.equation, self.fits, self.cycle = equation, fits, cycle
+        self.equation = equation
+        self.fits = fits
+        self.cycle = cycle
         self.evaluations = 0
         self.most_evaluations = 0
         self._edges = fits.edges.tolist()

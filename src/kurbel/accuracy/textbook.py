@@ -109,7 +109,7 @@ class RodBody(NamedTuple):
     """
 
     mass: Precise
-    place: Precise
+    gravity_center: Precise
     inertia: Precise
     pin_mass: Precise
 
@@ -157,8 +157,10 @@ class TextbookCylinder:
     def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
         self.motion: TextbookMotion = motion_of(cylinder.mechanism)
         self.turns = CYCLES[machine.cycle_of(cylinder)]
-        self.omega, self._ambient = 2 * mp.pi * mpf(machine.speed or 0.0), mpf(machine.ambient)
-        self._cylinder, self._mechanism = cylinder, cylinder.mechanism
+        self.omega = 2 * mp.pi * mpf(machine.speed or 0.0)
+        self._ambient = mpf(machine.ambient)
+        self._cylinder = cylinder
+        self._mechanism = cylinder.mechanism
         self._crankshaft = machine.crankshaft
         self._set_masses(machine.inclination_of(cylinder))
         self._set_friction(cylinder.friction)
@@ -181,8 +183,8 @@ class TextbookCylinder:
         self._parts = mpf(masses.parts if masses else 0.0)
         self._rod = RodBody(mpf(0), mpf(0), mpf(0), mpf(0))
         if rod is not None and rod.center_of_gravity is not None:
-            place, inertia = mpf(rod.center_of_gravity), mpf(rod.inertia)
-            self._rod = RodBody(mpf(rod.mass), place, inertia, mpf(0))
+            inertia = mpf(rod.inertia)
+            self._rod = RodBody(mpf(rod.mass), mpf(rod.center_of_gravity), inertia, mpf(0))
         elif rod is not None:
             at_crosshead = mpf(rod.mass) * mpf(rod.share)
             self._rod = RodBody(at_crosshead, mpf(0), mpf(0), mpf(rod.mass) - at_crosshead)
@@ -200,7 +202,8 @@ class TextbookCylinder:
             return
         self._crosshead = mpf((self._mechanism.has_rod and friction.crosshead) or 0.0)
         self._rings = mpf(friction.constant or 0.0)
-        rings, mechanism = friction.rings, self._mechanism
+        rings = friction.rings
+        mechanism = self._mechanism
         if rings:
             surface = rings.count * mp.pi * mpf(self._cylinder.pistons[0].bore) * mpf(rings.height)
             pressed = surface * mpf(rings.coefficient)
@@ -241,14 +244,15 @@ class TextbookCylinder:
         chambers = []
         for end, card in piston.chambers.items():
             assert isinstance(card, KNOWN_CARDS)
-            is_head, ratio = end == "head_end", piston.lever_ratio
+            is_head = end == "head_end"
+            ratio = piston.lever_ratio
             thickness = mpf(piston.head_end_rod if is_head else piston.crank_end_rod)
             area = mp.pi / 4 * (mpf(piston.bore) ** 2 - thickness**2) * abs(mpf(ratio))
             sign = 1 if is_head == (ratio > 0) else -1
             events = None
             if valve is not None and isinstance(card, Steam):
-                places = [self._share(angle) for angle in events_of(valve, end)]
-                events = Fractions(*(place if is_head else 1 - place for place in places))
+                shares = np.array([self._share(angle) for angle in events_of(valve, end)])
+                events = Fractions(*(shares if is_head else 1 - shares))
             drawing = drawn(card, lift, turns == 2, self._ambient, events)
             strokes = 1 + max(line.stroke for line in drawing.lines)
             chambers.append(TextbookChamber(drawing, sign, area, strokes))
@@ -266,7 +270,8 @@ class TextbookCylinder:
         yield self.motion.ends[0] + 360 * self.turns
         for stroke in range(2 * self.turns):
             turn, back = divmod(stroke, 2)
-            begin, end = self.motion.ends[back], self.motion.ends[back + 1]
+            begin = self.motion.ends[back]
+            end = self.motion.ends[back + 1]
             yield begin + 360 * turn
             if self._block or self._pins_rub:
                 square = 90 + 180 * mp.ceil((begin - 90) / 180)
@@ -315,7 +320,8 @@ class TextbookCylinder:
     def at(self, phi: Precise, within: Precise) -> Forces:
         """Return the forces at a crank angle, computed once for all quantities and equal cylinders."""
         cycle = 360 * self.turns
-        angle, inside = phi % cycle, within % cycle
+        angle = phi % cycle
+        inside = within % cycle
         key = int(mp.nint(angle * _FINEST)), int(mp.nint(inside * _FINEST))
         state = self._states.get(key)
         if state is None:
@@ -324,7 +330,8 @@ class TextbookCylinder:
 
     def _forces(self, phi: Precise, within: Precise) -> Forces:
         """Return the forces at a crank angle, computed anew."""
-        pose, (sense, lines) = self.motion.at(phi), self._piece(within)
+        pose = self.motion.at(phi)
+        sense, lines = self._piece(within)
         gas = self._gas(pose, lines)
         resistance = self._resistance[0 if (sense > 0) == self.motion.works_out else 1]
         steady = self._rings + self._ring_surface * abs(gas.difference)
@@ -334,7 +341,8 @@ class TextbookCylinder:
         push += self._parts * (self._g[0] - self.omega**2 * pose.curvature)
         if not isinstance(self.motion, RodMotion):
             M = self.motion.torque_of(push, phi)
-            friction, kinks = -sense * steady, (gas.difference,)
+            friction = -sense * steady
+            kinks = (gas.difference,)
             return Forces(
                 pose.slope, gas.force, gas.driving, friction, {}, M / self.motion.r, M, kinks
             )
@@ -383,12 +391,11 @@ class TextbookCylinder:
         outward = self._rod.pin_mass * self.motion.r * self.omega**2
         x = loads.Z[0] - outward * mp.cospi(phi / 180)
         y = loads.Z[1] + outward * mp.sinpi(phi / 180)
-        Z, H = mp.hypot(x, y), mp.hypot(*loads.H)
-        crank, crosshead, journals = (
-            self._at_crank * Z,
-            self._at_crosshead * H,
-            self._at_journals * Z,
-        )
+        Z = mp.hypot(x, y)
+        H = mp.hypot(*loads.H)
+        crank = self._at_crank * Z
+        crosshead = self._at_crosshead * H
+        journals = self._at_journals * Z
         losses = {
             "crank_pin": crank * (1 + swing.rate),
             "crosshead_pin": crosshead * side * swing.rate,
@@ -409,17 +416,20 @@ class TextbookCylinder:
         self, pose: Stance, swing: Jet, sense: int, push: Precise, couple: Precise
     ) -> PinLoads:
         """Return N and the forces on the pins of a rod; couple: by friction in the pins, in the sense of rotation."""
-        sin, cos = pose.sin_psi, pose.cos_psi
-        length, rod, omega = mpf(self._mechanism.rod_length), self._rod, self.omega
+        sin = pose.sin_psi
+        cos = pose.cos_psi
+        length = mpf(self._mechanism.rod_length)
+        rod = self._rod
+        omega = self.omega
 
         # weight and inertia of the rod
         upward = cos * swing.bend - sin * swing.rate**2
         forward = -sin * swing.bend - cos * swing.rate**2
-        x = rod.mass * (self._g[0] - omega**2 * (pose.curvature + rod.place * forward))
-        y = rod.mass * (self._g[1] - omega**2 * rod.place * upward)
+        x = rod.mass * (self._g[0] - omega**2 * (pose.curvature + rod.gravity_center * forward))
+        y = rod.mass * (self._g[1] - omega**2 * rod.gravity_center * upward)
 
         # moments about the crank pin, over L
-        tilt = -(1 - rod.place / length) * (cos * y - sin * x)
+        tilt = -(1 - rod.gravity_center / length) * (cos * y - sin * x)
         turning = (couple + rod.inertia * omega**2 * swing.bend) / length
         weight = -self._parts * self._g[1]
         lift = push * sin + weight * cos + tilt - turning
@@ -438,21 +448,23 @@ class TextbookCylinder:
         block = self._block * abs(along)
         Z = along, -side * block
         on_pin = mp.hypot(*Z)
-        crank, journals = self._at_crank * on_pin, self._at_journals * on_pin
+        crank = self._at_crank * on_pin
+        journals = self._at_journals * on_pin
         slides = self.motion.r * abs(mp.cospi(phi / 180))
         losses = {"block": block * slides, "crank_pin": crank, "journals": journals}
         return PinLoads(drag, (along, mpf(0)), Z, (push, along)), losses, crank + journals
 
     def inertia(self, phi: Precise) -> Precise:
         """Return the inertia in kg m² that has the kinetic energy of all moving masses."""
-        pose, masses = self.motion.at(phi), self._cylinder.masses
+        pose = self.motion.at(phi)
+        masses = self._cylinder.masses
         inertia = self._parts * pose.slope**2
         if masses is None or not isinstance(self.motion, RodMotion):
             return inertia
         inertia += (mpf(masses.rotating) + self._rod.pin_mass) * self.motion.r**2
         swing = self._swing(phi, pose)
-        x = pose.slope - self._rod.place * pose.sin_psi * swing.rate
-        y = self._rod.place * pose.cos_psi * swing.rate
+        x = pose.slope - self._rod.gravity_center * pose.sin_psi * swing.rate
+        y = self._rod.gravity_center * pose.cos_psi * swing.rate
         return inertia + self._rod.mass * (x**2 + y**2) + self._rod.inertia * swing.rate**2
 
     @property

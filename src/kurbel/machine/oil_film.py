@@ -19,7 +19,7 @@ _WIDEST = 1 / 20
 """Radial clearance over diameter from which on the formulas of a thin film do not hold."""
 
 
-class Size(NamedTuple):
+class PinDimension(NamedTuple):
     """A diameter or length of a pin in m, and the key and record that give it."""
 
     value: Number
@@ -163,17 +163,19 @@ class OilFilms(Record):
 
 def _sizes_in(
     records: Iterable[tuple[str, Record]], in_friction: str, in_shaft: str
-) -> Iterator[Size]:
+) -> Iterator[PinDimension]:
     """Yield the sizes with these keys that records give."""
     keys = {"friction": in_friction, "crankshaft": in_shaft}
     for name, record in records:
         key = keys[name]
         size = vars(record)[key] if key else None
         if size is not None:
-            yield Size(size, key, name)
+            yield PinDimension(size, key, name)
 
 
-def _rules_of(bearing: FilmBearing, diameters: list[Size], lengths: list[Size]) -> Iterator[Rule]:
+def _rules_of(
+    bearing: FilmBearing, diameters: list[PinDimension], lengths: list[PinDimension]
+) -> Iterator[Rule]:
     """Yield the rules on a bearing whose pin has these sizes elsewhere."""
     for size in diameters[:1]:
         same = f"'{size.key}' in '{size.record}' gives the same; leave one of them out"

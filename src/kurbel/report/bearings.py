@@ -19,7 +19,7 @@ from kurbel.tables.tables import together
 def _film_warnings(case: Case) -> Iterator[str]:
     from kurbel.notes.oil_film import film_warnings
 
-    return film_warnings(case)
+    yield from film_warnings(case)  # imported only where warnings are printed
 
 
 def _loaded(case: Case) -> list[Subject]:
