@@ -144,6 +144,12 @@ def test_what_is_only_small_is_no_root() -> None:
     assert len(common_roots(lambda x: np.stack((x[:, 0] - 0.3, x[:, 1] ** 2 + 1e-6), axis=1))) == 0
 
 
+def test_a_zero_at_one_sample_is_no_stretch() -> None:
+    found = roots(lambda x: x[:, 0] - 0.5)
+    assert found.places.tolist() == [0.5]
+    assert np.isnan(found.until).all()
+
+
 # minima
 
 
@@ -163,3 +169,16 @@ def test_a_minimum_far_along_a_slope() -> None:
     place, value = lowest(lambda x: np.abs(x[:, 0] - 0.123456789), 1)
     assert place == pytest.approx([0.123456789], abs=1e-10)
     assert value < 1e-10
+
+
+@pytest.mark.parametrize(("steep", "fall"), [(1e4, 1e-2), (1e6, 1.0)])
+def test_along_a_bent_valley_to_the_edge(steep: float, fall: float) -> None:
+    """A valley v = 0.5 + 0.3 sin 6u that falls toward u = 1 by far less than its sides rise."""
+
+    def valley(x: np.ndarray) -> np.ndarray:
+        u, v = x[:, 0], x[:, 1]
+        return steep * (v - 0.5 - 0.3 * np.sin(6 * u)) ** 2 + (1 - u) * fall
+
+    place, value = lowest(valley, 2)
+    assert place == pytest.approx([1.0, 0.5 + 0.3 * math.sin(6.0)], abs=1e-9)
+    assert value < 1e-12
