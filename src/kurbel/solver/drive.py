@@ -67,7 +67,8 @@ class Drive:
 
     mass: reciprocating, 0 without masses; rod: a connecting rod given by centre of gravity and moment of inertia, else
     None; rod_centrifugal_force: m R ω² of the rotating part of another rod, which D of R 302 excludes (that of an exact
-    rod is included); pin_inertia: m R² of what rotates with the crank pin; has_inertia: masses and a speed are given.
+    rod is included); knuckle_mass: of a link rod at its knuckle pin; pin_inertia: m R² of what rotates with the crank pin;
+    has_inertia: masses and a speed are given.
 
     weight: of the reciprocating masses along the stroke line and on the guide, None where it is left out; down: cos of
     the inclination i (180° − i if the machine turns under), None without one: if positive, N > 0 loads the lower guide.
@@ -108,6 +109,10 @@ class Drive:
         self.rod_centrifugal_force: Number = (
             self.centrifugal(rod.mass * (1 - rod.share)) if rod and not exact else 0.0
         )
+        # of a link rod at its knuckle pin
+        self.knuckle_mass: Number = 0.0
+        if cylinder.link_rod is not None:
+            self.knuckle_mass = cylinder.link_rod.knuckle_mass
         self.has_inertia = masses is not None and self.omega is not None
 
         inclination = machine.inclination_of(cylinder)
@@ -159,6 +164,15 @@ class Drive:
             self.pumping,
         )
         return other
+
+    @cached_property
+    def links(self) -> tuple[Drive, ...]:
+        """The cylinders whose link rods are on the master rod of this one; of many machines with their numbers."""
+        links = []
+        for cylinder in self.machine.cylinders:
+            if cylinder.link_rod is not None and cylinder.link_rod.master == self.name:
+                links.append(Drive(self.machine, cylinder, self.count, self.index))
+        return tuple(links)
 
     @property
     def pieces(self) -> Pieces:

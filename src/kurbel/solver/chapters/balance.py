@@ -130,6 +130,7 @@ def contributions_of(
         turned_back = np.multiply.outer(np.arange(-k, k + 1), lag)
         turned = waves * throw.mass * unit_vector(throw.bank - turned_back)
         contributions.append(Contribution(turned, throw.place))
+    contributions += _of_knuckles(throws, k, count)
     # m_rot R of the throws, and the weights: u n² e^{inφ}
     rotating = [throw.weight(throw.rotating) for throw in throws]
     for weight in (*rotating, *weights):
@@ -137,6 +138,27 @@ def contributions_of(
             waves = np.zeros((2 * k + 1, count), complex)
             waves[k + weight.order] = weight.product * weight.order**2
             contributions.append(Contribution(waves, weight.place))
+    return contributions
+
+
+def _of_knuckles(throws: Sequence[CylinderThrow], k: int, count: int) -> list[Contribution]:
+    """Return −m_k z″(φ − δ) e^{iγ} of the mass of each link rod at its knuckle pin, from order −k to k."""
+    contributions = list[Contribution]()
+    for throw in throws:
+        if not some(throw.knuckle_mass != 0):
+            continue
+        # z″ is complex: its waves forward and backward are not conjugate
+        samples = max(_SAMPLES, 4 * k)
+        degrees: Array = np.arange(samples, dtype=float)[:, None] * (360.0 / samples)
+        _, acceleration = throw.cylinder.mechanism.knuckle_motion(CrankAngle.of(degrees))
+        values = np.broadcast_to(acceleration, (samples, count))
+        transformed = np.fft.fft(values, axis=0) / samples
+        orders = np.arange(-k, k + 1)
+        waves = unless_cancelled(transformed[orders], _EPS * np.abs(values).max(axis=0), 1.0)
+        lag = np.broadcast_to(throw.lag, count)
+        turned_back = np.multiply.outer(orders, lag)
+        turned = waves * -throw.knuckle_mass * unit_vector(throw.bank - turned_back)
+        contributions.append(Contribution(turned, throw.place))
     return contributions
 
 
