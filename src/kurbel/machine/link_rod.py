@@ -131,8 +131,12 @@ def _obstacle(
         return ("rod",), "it is that of its master; the rod of its own is 'link_rod.length'"
     if np.any(np.equal((cylinder.bank_angle - master.bank_angle) % 360.0, 0.0)):
         return ("bank_angle",), "a link rod has a stroke line of its own; this is its master's"
-    place = cylinder.axial_position
-    if place is not None and np.any(np.not_equal(place, master.axial_position)):
+    position = cylinder.axial_position
+    of_master_rod = master.axial_position
+    is_elsewhere = position is not None and of_master_rod is None
+    if position is not None and of_master_rod is not None:
+        is_elsewhere = bool(np.any(np.not_equal(position, of_master_rod)))
+    if is_elsewhere:
         return ("axial_position",), "it is that of its master"
     if cylinder.crank_position not in (None, master.crank_position):
         return ("crank_position",), "it follows from the pin of its master; leave it out"

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby, product
+from typing import Any
 
 from kurbel.crank_angle import CYCLES
 from kurbel.declared.forms.structures import RecordForm
@@ -319,10 +320,12 @@ def _linked_in_order(
     first = linked[0]
     names = [cylinder.name or f"cylinder {index + 1}" for index, cylinder in enumerate(linked)]
     on_pins: list[Cylinder] = []
+    # as in a cylinder that gives no crank position
+    free: Any = None
     for index, cylinder in enumerate(linked):
         if cylinder.link_rod:
             master = on_pins[names.index(cylinder.link_rod.master)]
-            cylinder = replace(cylinder, throw_angle=master.throw_angle, crank_position=None)
+            cylinder = replace(cylinder, throw_angle=master.throw_angle, crank_position=free)
         elif cylinder.throw_angle is None and cylinder.crank_position is None:
             # where no pin is given, that of cylinder 1
             if index == 0 or order is None:

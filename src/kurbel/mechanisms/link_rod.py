@@ -24,7 +24,7 @@ from kurbel.mechanisms.slider_crank import ROD_OFFERS, SliderCrank
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.search import bracketed_roots
 
-_TURNS: Array = np.arange(720) * 0.5
+_TURNS: Array = np.linspace(0.0, 359.5, 720)
 """Crank angles in degrees at which a link rod is looked at to see whether it reaches and how often it turns back."""
 _SEARCHED = 60.0
 """Degrees to either side of 0° and 180° within which a dead centre is."""
@@ -232,6 +232,10 @@ class LinkedPiston(Mechanism):
         """Return dz/dφ and d²z/dφ² of the knuckle pin in m, complex in the frame of the own stroke line."""
         knuckle = self._knuckle_at(angle)
         return knuckle.speed, knuckle.acceleration
+
+    def knuckle_place(self, angle: CrankAngle) -> Any:
+        """Return z of the knuckle pin in m, complex in the frame of the own stroke line."""
+        return self._knuckle_at(angle).place
 
     def turning_on_master(self, angle: CrankAngle) -> Number:
         """Return ψ_l′ − ψ′, at which the link rod turns on its knuckle pin."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from kurbel.solver.gas import PistonGas
 from kurbel.solver.motion import every_dead_centre
 
 if TYPE_CHECKING:
+    from kurbel.mechanisms.link_rod import LinkedPiston
     from kurbel.solver.shaft import SupportedShaft
 
 _IDLE = 1e-4
@@ -182,6 +183,12 @@ class Drive:
         bends = [Angles(np.repeat(np.arange(count), centres.shape[1]), centres.ravel())]
         for gas in self.gas:
             bends += gas.starts
+        # the guide of a master rod feels where something bends or jumps in its links
+        for link in self.links:
+            ends = link.pieces.ends
+            owners = np.repeat(np.arange(count), len(ends) // count)
+            between = cast("LinkedPiston", link.mechanism).between
+            bends.append(Angles(owners, np.mod(ends + between, self.cycle)))
         machine = np.concatenate([angles.machine for angles in bends])
         degrees = np.concatenate([angles.degrees for angles in bends])
         is_dense = len(degrees) >= _DENSE * count

@@ -250,6 +250,9 @@ class SupportedShaft:
         angle, for the weight of the flywheel.
         """
         weight = flywheel_weight(self.machine, cylinder, angle) if throw.flywheel else 0.0
+        if any(self.machine.cylinders[index].link_rod for index in throw.cylinders):
+            # link rods push through the big end of their master rod
+            rods = [sum(rods)]
         body = FreeBody(self.shaft, cylinder.mechanism.crank, rods, weight)
         omega = 0.0 if self.machine.speed is None else 2 * math.pi * self.machine.speed
         # what turns pulls outward, against D

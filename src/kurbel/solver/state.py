@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -43,6 +43,9 @@ from kurbel.solver.chambers import Chambers
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
 from kurbel.solver.vector import Vector
+
+if TYPE_CHECKING:
+    from kurbel.mechanisms.link_rod import LinkedPiston
 
 
 class FrictionMoments(NamedTuple):
@@ -333,11 +336,16 @@ class State(Chambers):
 
     # link rods
 
+    @property
+    def linked_piston(self) -> LinkedPiston:
+        """Its mechanism, of a cylinder with a link rod."""
+        return cast("LinkedPiston", self.mechanism)
+
     @cached_property
     def _knuckle_inertia(self) -> Any:
         """Inertia force −m_k ω² z″ in N of a link rod's mass at its knuckle pin, complex in the own frame."""
         mass, omega = self.drive.knuckle_mass, self.omega
-        _, acceleration = self.mechanism.knuckle_motion(self.angle)
+        _, acceleration = self.linked_piston.knuckle_motion(self.angle)
         if omega is None:
             return 0.0 * acceleration
         return acceleration * (-mass * omega * omega)
@@ -345,14 +353,21 @@ class State(Chambers):
     @property
     def _knuckle_inertia_on_pin(self) -> Any:
         """What reaches the crank pin of that force, in N, in the frame of the throw: −D + iT."""
-        return self.mechanism.force_on_pin(self.angle, self._knuckle_inertia)
+        return self.linked_piston.force_on_pin(self.angle, self._knuckle_inertia)
 
     @property
     def knuckle_inertia_torque(self) -> Number:
         """Torque −m_k ω² Re(z′* z″) in N m of that force."""
-        speed, _ = self.mechanism.knuckle_motion(self.angle)
+        speed, _ = self.linked_piston.knuckle_motion(self.angle)
         torque: Number = (np.conj(speed) * self._knuckle_inertia).real
         return torque
+
+    @property
+    def knuckle_momentum_rate(self) -> Number:
+        """Rate m_k ω² Im(z* z″) in N m of the moment of momentum of that mass about the shaft."""
+        place = self.linked_piston.knuckle_place(self.angle)
+        rate: Number = -(np.conj(place) * self._knuckle_inertia).imag
+        return rate
 
     @cached_property
     def knuckle_force(self) -> Any:
@@ -367,7 +382,7 @@ class State(Chambers):
         """Moment M_K in N m of that force on the master rod about the crank pin."""
         if self.knuckle_force is None:
             return None
-        return self.mechanism.moment_on_master(self.angle, self.knuckle_force)
+        return self.linked_piston.moment_on_master(self.angle, self.knuckle_force)
 
     @cached_property
     def _links_side(self) -> Number:
@@ -388,7 +403,7 @@ class State(Chambers):
         """Moment ΣM_K in N m of the link rods on this master rod."""
         moments: Number = 0.0
         for link in self.drive.links:
-            between = link.mechanism.between
+            between = cast("LinkedPiston", link.mechanism).between
             state = State(link, CrankAngle.of(self.phi - between), self.within - between)
             moment = state.knuckle_moment
             if moment is not None:
@@ -697,7 +712,7 @@ def reduced_inertia(state: State) -> Any:
     drive, rod = state.drive, state.drive.rod
     inertia = state.slope * state.slope * drive.mass + drive.pin_inertia
     if drive.cylinder.link_rod is not None:
-        speed, _ = state.mechanism.knuckle_motion(state.angle)
+        speed, _ = state.linked_piston.knuckle_motion(state.angle)
         inertia = inertia + drive.knuckle_mass * np.abs(speed) ** 2
     return (
         inertia if rod is None else inertia + state.rod_slope * state.rod_slope * rod.excess_inertia

@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -46,6 +46,9 @@ from kurbel.solver.shaft import (
     wheels_of,
 )
 from kurbel.solver.state import State
+
+if TYPE_CHECKING:
+    from kurbel.mechanisms.link_rod import LinkedPiston
 
 _SAMPLES = 256
 """Samples of a revolution for the Fourier analysis of a mechanism; repeatedly four times as many for a short rod, …"""
@@ -150,7 +153,8 @@ def _of_knuckles(throws: Sequence[CylinderThrow], k: int, count: int) -> list[Co
         # z″ is complex: its waves forward and backward are not conjugate
         samples = max(_SAMPLES, 4 * k)
         degrees: Array = np.arange(samples, dtype=float)[:, None] * (360.0 / samples)
-        _, acceleration = throw.cylinder.mechanism.knuckle_motion(CrankAngle.of(degrees))
+        linked_piston = cast("LinkedPiston", throw.cylinder.mechanism)
+        _, acceleration = linked_piston.knuckle_motion(CrankAngle.of(degrees))
         values = np.broadcast_to(acceleration, (samples, count))
         transformed = np.fft.fft(values, axis=0) / samples
         orders = np.arange(-k, k + 1)
@@ -551,6 +555,8 @@ class MachineBalance(Results):
             """Return dH/dt = m e b in N m, less the couple of an exact rod, as ψ counts against the rotation."""
             drive = state.drive
             moment = state.b * (drive.mass * drive.mechanism.offset)
+            if drive.cylinder.link_rod is not None:
+                moment = moment + state.knuckle_momentum_rate
             return moment - state.rod_couple if drive.rod else moment
 
         if self.effort is None:
@@ -757,4 +763,5 @@ class MachineBalance(Results):
 def changes_angular_momentum(cylinder: CylinderForces) -> bool:
     """Return whether the angular momentum of its reciprocating masses and rod about the shaft varies."""
     drive = cylinder.drive
-    return drive.has_inertia and (some(drive.mechanism.offset != 0) or drive.rod is not None)
+    turns_unevenly = drive.rod is not None or some(drive.knuckle_mass != 0)
+    return drive.has_inertia and (some(drive.mechanism.offset != 0) or turns_unevenly)

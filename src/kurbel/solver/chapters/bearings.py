@@ -348,7 +348,7 @@ class RodPin(Bearing):
         slope = formulas.rod_slope(state.angle.cos, cos_psi, mechanism.lam)
         if state.drive.cylinder.link_rod is not None:
             # ψ_l does not follow from the crank pin, and τ = −ψ_l
-            slope = -mechanism.coupler_at(state.angle).slope
+            slope = -state.linked_piston.coupler_at(state.angle).slope
         rate = 1 + slope if self._pin == "crank_pin" else slope
         return resampled(pieces, self._own, rate).real[0]
 
@@ -420,7 +420,7 @@ class KnucklePin(RodPin):
         """Return the load in each frame; see `RodPin`."""
         sin_psi, cos_psi = state.rod_angle or (0.0, 1.0)
         force = state.knuckle_force
-        master = state.mechanism.master_direction(state.angle)
+        master = state.linked_piston.master_direction(state.angle)
         return {
             "engine": force * bank,
             "rod": force * (cos_psi + 1j * sin_psi),
@@ -430,7 +430,7 @@ class KnucklePin(RodPin):
     def _turning(self) -> Array:
         """The link rod turns on its knuckle pin with ψ_l′ − ψ′; see `Bearing`."""
         state = self._own.samples
-        rate = state.mechanism.turning_on_master(state.angle)
+        rate = state.linked_piston.turning_on_master(state.angle)
         return resampled(self._common, self._own, rate).real[0]
 
 
