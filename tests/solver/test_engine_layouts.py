@@ -427,10 +427,9 @@ def test_a_planted_slip_changes_a_figure(
     exec(lines[lines.index("def ") :], spoilt)
     monkeypatch.setattr(function, "__code__", spoilt[function.__name__].__code__)
     document = MACHINES[id]
-    broken = 0
     for figure in document["figures"]:
         try:
             is_figure(document["machine"], figure, tmp_path / "machine.yaml")
         except (AssertionError, KurbelError):
-            broken += 1
-    assert broken
+            return
+    pytest.fail("no figure is another one")
