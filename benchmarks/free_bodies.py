@@ -12,8 +12,9 @@ import numpy as np
 
 from kurbel import loads
 from kurbel.accuracy.methods import mp
-from kurbel.accuracy.textbook import DIGITS, NEEDED, Textbook, unknown
-from kurbel.accuracy.trials import errors, own_answer
+from kurbel.accuracy.references import NEEDED, Textbook, unknown
+from kurbel.accuracy.textbook import DIGITS
+from kurbel.accuracy.trials import errors, kurbel_answer
 from kurbel.shipped import shipped
 
 TABLE = Path(__file__).parent.parent / "tests" / "accuracy" / "free_bodies.tsv"
@@ -26,7 +27,7 @@ def lines_of(name: str) -> list[str]:
     textbook = Textbook(machine)
     lines = []
     for quantity in NEEDED:
-        answer = own_answer(machine, quantity)
+        answer = kurbel_answer(machine, quantity)
         if answer is None:
             continue
         obstacle = next(unknown(machine, quantity), "")

@@ -607,6 +607,27 @@ def own_fault(result: Any, what: str) -> Iterator[str]:
         yield f"{what}: status {result.exit_code}: {result.stderr.strip()[-300:]}"
 
 
+def compare(name: str, text: str, random: Random, laws: list[Any], found: Counter[str]) -> None:
+    """Print every difference of a machine by these laws, and count what there was."""
+    try:
+        machine_of(text)
+    except KurbelError:
+        found["invalid"] += 1
+        return
+    found["valid"] += 1
+    begin = time.process_time()
+    try:
+        for law in laws:
+            for line in law(text, random):
+                found["differences"] += 1
+                print(f"{name}: {line}", flush=True)
+    except Exception:
+        found["faults"] += 1
+        print(f"{name}: {traceback.format_exc(limit=-4)}", flush=True)
+    if (seconds := time.process_time() - begin) > SLOW:
+        print(f"{name}: {seconds:.0f} s", flush=True)
+
+
 def main() -> None:
     """Print every difference with the machine, and how many there were."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 200
@@ -625,25 +646,11 @@ def main() -> None:
         path.stem: path.read_text("utf-8") for path in sorted(shipped) if path.stem != "answers"
     }
     found: Counter[str] = Counter()
-    for number, (name, text) in enumerate(texts.items()):
-        random = np.random.default_rng([seed, number])
-        try:
-            machine_of(text)
-        except KurbelError:
-            found["invalid"] += 1
-            continue
-        found["valid"] += 1
-        begin = time.process_time()
-        try:
-            for law in laws:
-                for line in law(text, random):
-                    found["differences"] += 1
-                    print(f"{name}: {line}", flush=True)
-        except Exception:
-            found["faults"] += 1
-            print(f"{name}: {traceback.format_exc(limit=-4)}", flush=True)
-        if (seconds := time.process_time() - begin) > SLOW:
-            print(f"{name}: {seconds:.0f} s", flush=True)
+    try:
+        for number, (name, text) in enumerate(texts.items()):
+            compare(name, text, np.random.default_rng([seed, number]), laws, found)
+    except KeyboardInterrupt:
+        print("interrupted; so far:")
     print(f"seed {seed}: {dict(found)}")
 
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel import crank_formulas, load, loads
-from kurbel.accuracy.extremes import table
+from kurbel.accuracy.extremes import table_lines
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Machine
 from kurbel.mechanisms.slider_crank import SliderCrank
@@ -36,7 +36,7 @@ class Difference(NamedTuple):
 
 def first_machine() -> Machine:
     """Return the first built-in machine."""
-    return loads(table("scenes.tsv")[0][2])
+    return loads(table_lines("scenes.tsv")[0][2])
 
 
 def model_errors(machine: Machine) -> Iterator[Difference]:

@@ -1,9 +1,10 @@
-"""Oil films of all bearings of the gas engine, as a ratio to `python -c 'import numpy'` of the same run.
+"""Oil films of all bearings of the gas engine, as a ratio to `import numpy` of the same run.
 
     python benchmarks/oil_film.py [ROUNDS]
 
-Both take turns, and the least times are compared: on a machine that does other work besides only these show what is
-needed. `import numpy` takes some 0.1 s on an idle machine; all films are to take no longer.
+Both take turns, and the least times are compared: on a machine that does other work besides only
+these show what is needed. `import numpy` takes some 0.1 s on an idle machine; all films are to take
+no longer.
 """
 
 import subprocess

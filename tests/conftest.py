@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -37,30 +37,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="write what the program prints now into tests/golden, the expected messages of bad machine files, the "
         "README and docs; read the diff. Not with -n.",
     )
-
-
-@pytest.fixture
-def solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Commands share the results of a machine: where they tell them in many ways, to solve it anew tells nothing new.
-
-    Not where a file is written, which may be refused, nor for machines with traces, whose files may change.
-    """
-    from kurbel.cli import request
-    from kurbel.machine_file import source
-    from kurbel.machine_file.reader import read_machine
-    from kurbel.solver.case import Case
-    from representative import case_from
-
-    alone = request.case_of
-
-    def shared(file: str, case_name: str, overrides: Iterable[str], *outputs: str | None) -> Case:
-        if case_name or any(outputs):
-            return alone(file, case_name, overrides, *outputs)
-        origin = source.read(file).set_over(overrides)
-        case = case_from(origin)
-        return Case(read_machine(origin)) if case.machine.trace_files else case
-
-    monkeypatch.setattr(request, "case_of", shared)
 
 
 @pytest.fixture

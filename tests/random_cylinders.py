@@ -16,15 +16,15 @@ from machines import constant_pressure, one_cylinder
 def cylinders(seed: int, count: int, friction: bool = False) -> list[CylinderForces]:
     """Return so many cylinders whose crosshead does not lock itself."""
     random = np.random.default_rng(seed)
-    found: list[CylinderForces] = []
-    while len(found) < count:
+    results: list[CylinderForces] = []
+    while len(results) < count:
         try:
             forces = random_cylinder(random, friction)
             forces.extremes_of("N")
         except (RuleError, NoSolutionError):
             continue
-        found.append(forces)
-    return found
+        results.append(forces)
+    return results
 
 
 def random_cylinder(random: np.random.Generator, friction: bool) -> CylinderForces:

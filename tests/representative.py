@@ -23,7 +23,7 @@ def case_from(origin: Origin) -> Case:
 
 
 def case_of(name: str) -> Case:
-    """The results of a machine that comes with kurbel, those of `solved_once`."""
+    """The results of a machine that comes with kurbel."""
     return case_from(read(CONFIGS[name]))
 
 

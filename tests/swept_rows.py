@@ -42,11 +42,13 @@ def numbers_in(origin: Origin) -> list[tuple[str, float, str]]:
         ]
     except KurbelError:
         return []
-    known = [(path, found) for path, found in texts if found and not NO_NUMBERS & {*map(str, path)}]
+    known = [
+        (path, result) for path, result in texts if result and not NO_NUMBERS & {*map(str, path)}
+    ]
     return [
-        (dotted(path), float(found[1]), found[2] or "")
-        for path, found in known
-        if float(found[1]) > 0
+        (dotted(path), float(result[1]), result[2] or "")
+        for path, result in known
+        if float(result[1]) > 0
     ]
 
 

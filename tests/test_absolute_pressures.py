@@ -10,8 +10,6 @@ from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 MACHINE = """
 speed: 240 rpm
 stroke: 300 mm
@@ -26,7 +24,7 @@ ABSOLUTE = MACHINE.format(counted="absolute", low="1 bar", high="7 bar")
 GAUGE = MACHINE.format(counted="gauge", low="-0.01325 bar", high="5.98675 bar")
 
 
-def test_programs_are_told_too() -> None:
+def test_programs_are_informed_too() -> None:
     (head, *_) = csv.reader(
         printed(
             "forces", "-", "--columns", "p_head", "--angles", "90", "-f", "csv", text=ABSOLUTE
@@ -38,7 +36,7 @@ def test_programs_are_told_too() -> None:
     ][0]
     assert parsed["columns"][1]["unit"] == "Pa abs"
     assert parsed["columns"][1]["values"] == pytest.approx([1e5], rel=1e-15)
-    (p_max,) = (one for one in parsed["key_values"] if one["id"] == "p_max")
+    (p_max,) = (key_value for key_value in parsed["key_values"] if key_value["id"] == "p_max")
     assert (p_max["unit"], p_max["value"]) == ("Pa abs", pytest.approx(7e5, rel=1e-15))
     assert Case(loads(ABSOLUTE)).cylinders[0]["p_max"].unit == "Pa abs"
 
@@ -53,7 +51,7 @@ def test_forces_and_differences_hang_on_no_zero() -> None:
 
 
 def test_places_count_as_the_file_does() -> None:
-    found = printed(
+    result = printed(
         "forces",
         "-",
         "--where",
@@ -64,7 +62,7 @@ def test_places_count_as_the_file_does() -> None:
         "csv",
         text=ABSOLUTE,
     )
-    assert float(found.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
+    assert float(result.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
 
 
 # units that say which zero they have, of ISO 80000-4 and of DIN 1314 before 1977
@@ -110,3 +108,22 @@ def test_units_that_say_another_zero_than_the_machine_are_refused(unit: str, for
         loads(written_in(unit, "gauge" if counted == "absolute" else "absolute", form))
     assert f"'pressures: {counted}'" in str(caught.value)
     assert unit in str(caught.value)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("unit", ZEROED)
+def test_units_that_all_name_their_zero_need_no_key(unit: str, form: str) -> None:
+    counted, size = ZEROED[unit]
+    text = written_in(unit, counted, form).replace(f"pressures: {counted}, ", "")
+    (cylinder,) = Case(loads(text)).cylinders
+    over = 5 * size - (1e5 if counted == "absolute" else 0)
+    assert cylinder.at([90.0]).P[0] == pytest.approx(over * math.pi / 4 * 0.45**2, rel=1e-12)
+
+
+def test_units_of_which_one_does_not_name_its_zero_are_refused() -> None:
+    """Of 5 bara and 1 bar the second may be either."""
+    with pytest.raises(MachineFileError) as caught:
+        loads(
+            f"{SINGLE_ACTING}indicator: {{head_end: {{constant: {{expansion: 5 bara, compression: 1 bar}}}}}}"
+        )
+    assert "'pressures: absolute'" in str(caught.value)

@@ -9,8 +9,6 @@ import pytest
 from command import answer, run
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 
 def parsed(name: str, *more: str) -> dict[str, Any]:
     return answer("balance", CONFIGS[name], *more)
@@ -21,16 +19,19 @@ def ids(entries: list[dict[str, Any]]) -> list[str]:
 
 
 def test_columns_and_tables_have_the_names_that_are_relied_on() -> None:
-    found = parsed("four-in-line")
-    assert ids(found["machine_columns"]) == ["phi", "F_x", "F_y", "M_x", "M_y", "M_roll"]
-    orders = next(one for one in found["machine_place_tables"] if one["id"] == "orders")
+    result = parsed("four-in-line")
+    assert ids(result["machine_columns"]) == ["phi", "F_x", "F_y", "M_x", "M_y", "M_roll"]
+    orders = next(table for table in result["machine_place_tables"] if table["id"] == "orders")
     assert ids(orders["columns"])[:3] == ["order", "F_forward", "F_backward"]
     assert {"M_forward", "M_backward"} < set(ids(orders["columns"]))
     assert orders["columns"][0]["values"][:3] == [1, 2, 4]
     assert orders["columns"][1]["values"][0] == 0
     named = {"F_free_max", "M_free_max", "counterweight_best", "F_free_best"}
-    assert named < set(ids(found["machine_key_values"]))
-    assert next(one["values"][-1] for one in found["machine_columns"] if one["id"] == "phi") == 360
+    assert named < set(ids(result["machine_key_values"]))
+    assert (
+        next(column["values"][-1] for column in result["machine_columns"] if column["id"] == "phi")
+        == 360
+    )
 
 
 def test_names_of_weights_are_words_for_programs_and_texts_for_people() -> None:
@@ -39,7 +40,7 @@ def test_names_of_weights_are_words_for_programs_and_texts_for_people() -> None:
         "each: {stroke: 100 mm, rod_ratio: 4, masses: {reciprocating: 1 kg}}}"
     )
     whole = json.loads(run("balance", "-", "-f", "json", text=three).stdout)
-    (best,) = [one for one in whole["machine_place_tables"] if one["id"] == "best_weights"]
+    (best,) = [table for table in whole["machine_place_tables"] if table["id"] == "best_weights"]
     assert "shaft_n_1_against_the_crank_A" in [row["weight"] for row in best["rows"]]
     assert all(re.fullmatch(r"\w+", row["weight"]) for row in best["rows"])
     assert "shaft n = 1, against the crank: A" in run("balance", "-", text=three).stdout

@@ -2,12 +2,9 @@
 
 import json
 
-import pytest
-
 from command import run
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 
 
@@ -39,7 +36,7 @@ def test_json_has_one_part_for_each_pin_and_bearing() -> None:
         *film,
     ]
     values = {value["id"]: value for value in parts["bearing A"]["key_values"]}
-    asked = {
+    words = {
         "load_max",
         "load_mean",
         "load_min",
@@ -47,5 +44,5 @@ def test_json_has_one_part_for_each_pin_and_bearing() -> None:
         "pressure_max",
         "pressure_velocity",
     }
-    assert asked <= values.keys()
+    assert words <= values.keys()
     assert values["load_max"]["value"] >= max(parts["bearing A"]["columns"][1]["values"])

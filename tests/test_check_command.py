@@ -12,8 +12,6 @@ from command import run
 from kurbel import loads, solve
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
 PRESSURE = "constant: {expansion: 5 bar, compression: 1 bar}"
 GAUGE = "indicator: {head_end: {trace: {unit: bar, points: [[0, 1], [180, 5], [360, 1]]}}}\n"
@@ -24,7 +22,7 @@ def called(text: str, *arguments: str) -> tuple[int, str, str]:
     return result.exit_code, result.stdout, result.stderr
 
 
-def test_a_limit_passed_in_magnitude_by_the_other_sign_is_told() -> None:
+def test_a_limit_passed_in_magnitude_by_the_other_sign_is_reported() -> None:
     text = ENGINE + f"masses: {{piston: 500 kg}}\nindicator: {{head_end: {{{PRESSURE}}}}}\n"
     low, high = sorted(
         solve(loads(text)).cylinders[0].extremes_of("T") or (), key=lambda one: one.value
@@ -35,23 +33,24 @@ def test_a_limit_passed_in_magnitude_by_the_other_sign_is_told() -> None:
     status, listed, _ = called(text + f"limits: {{T_min: -{halfway} N}}\n", "check")
     assert status == 0
     assert f"T_max = {high.value:.9g} N is beyond it with the other sign; " in listed
-    for told in ("", f", T_max: {2 * high.value} N"):  # who bounds the other end too knows
+    for reported in ("", f", T_max: {2 * high.value} N"):  # who bounds the other end too knows
         status, listed, _ = called(
-            text + f"limits: {{T_min: -{2 * high.value} N{told}}}\n", "check"
+            text + f"limits: {{T_min: -{2 * high.value} N{reported}}}\n", "check"
         )
         assert (status, "other sign" in listed) == (0, False)
 
 
 # findings for programs
 
-FINDING = ["file", "line", "column", "key", "message", "severity"]
+PLACE = ["file", "line", "column", "key", "message", "severity"]
+FINDING = [*PLACE, "id", "scope", "value", "bound", "unit", "margin", "verdict", "case"]
 
 
 def found_as_json(text: str, *arguments: str) -> tuple[int, dict[str, Any]]:
     status, listed, said = called(text, "check", "-f", "json", *arguments)
     assert said == ""
     parsed: dict[str, Any] = json.loads(listed)
-    assert all(list(one) == FINDING for one in parsed["findings"])
+    assert all(list(finding) == FINDING for finding in parsed["findings"])
     return status, parsed
 
 
@@ -62,9 +61,9 @@ def test_findings_of_a_check_have_their_place() -> None:
     )
     status, parsed = found_as_json(text)
     places = {
-        one["key"]: (one["line"], one["column"], one["severity"])
-        for one in parsed["findings"]
-        if one["key"]
+        finding["key"]: (finding["line"], finding["column"], finding["severity"])
+        for finding in parsed["findings"]
+        if finding["key"]
     }
     assert status == 2  # δ cannot be judged
     assert parsed["machine"] == "machine"
@@ -75,9 +74,9 @@ def test_findings_of_a_check_have_their_place() -> None:
         "limits.delta": (7, 3, "error"),
     }
     (left_out,) = (
-        one
-        for one in parsed["findings"]
-        if "no bore" in one["message"] or "no indicator" in one["message"]
+        finding
+        for finding in parsed["findings"]
+        if "no bore" in finding["message"] or "no indicator" in finding["message"]
     )
     assert (left_out["key"], left_out["severity"]) == (None, "info")
     assert found_as_json(ENGINE + "limits: {c_max: 1 m/s}\n")[0] == 1
@@ -91,7 +90,11 @@ def test_a_warning_has_the_place_of_its_cylinder() -> None:
         + one % ("left", GAUGE.strip())
         + one % ("right", GAUGE.strip())
     )
-    warnings = [one for one in found_as_json(text)[1]["findings"] if "absolute?" in one["message"]]
+    warnings = [
+        finding
+        for finding in found_as_json(text)[1]["findings"]
+        if "absolute?" in finding["message"]
+    ]
     assert [(warning["key"], warning["line"], warning["severity"]) for warning in warnings] == [
         ("cylinders[0]", 3, "warning"),
         ("cylinders[1]", 4, "warning"),
@@ -147,9 +150,7 @@ def test_a_check_as_junit(tmp_path: Path) -> None:
 def test_faults_of_the_file_are_findings_too(tmp_path: Path) -> None:
     status, parsed = found_as_json("speed: 60\ncrank: 400 mm\nrd: 2 m\n")
     assert (status, parsed["machine"]) == (2, None)
-    assert [
-        tuple(one[key] for key in FINDING if key != "message") for one in parsed["findings"]
-    ] == [
+    assert [tuple(one[key] for key in PLACE if key != "message") for one in parsed["findings"]] == [
         ("<stdin>", 1, 8, "speed", "error"),
         ("<stdin>", 3, 1, "rd", "error"),
     ]
@@ -193,8 +194,8 @@ def test_many_files_are_checked_in_one_run(
     assert ("wrong.yaml:5:1: bor: unknown key" in result.stderr) == ("wrong" in names)
     as_json = run("check", *files, "-f", "json")
     assert as_json.exit_code == status
-    found = json.loads(as_json.stdout)["findings"]
-    assert {one["file"] for one in found} == set(files)
+    results = json.loads(as_json.stdout)["findings"]
+    assert {one["file"] for one in results} == set(files)
 
 
 # notes
@@ -244,16 +245,16 @@ def of_two(figures: str, *arguments: str) -> tuple[int, str]:
 def test_a_limit_is_held_against_those_it_names(name: str, largest: float) -> None:
     """Of each cylinder, and not of the machine, where nobody is named."""
     assert of_two(f"limits: {{{name}: {newton(1.001 * largest)}}}", "check")[0] == 0
-    status, told = of_two(f"limits: {{{name}: {newton(0.999 * largest)}}}", "check")
+    status, reported = of_two(f"limits: {{{name}: {newton(0.999 * largest)}}}", "check")
     assert status == 1
-    assert told.count("FAIL") == 1
+    assert reported.count("FAIL") == 1
 
 
 def test_expectations_have_scopes_too() -> None:
     figures = {"machine.T_max": HP + LP, "HP.T_max": HP, "LP.T_max": LP}
     lines = [f"  {name}: {newton(size)} ± 0.1 %" for name, size in figures.items()]
-    status, told = of_two("\n".join(["expect:", *lines]), "check")
-    assert (status, told.count(" PASS ")) == (0, 3)
+    status, reported = of_two("\n".join(["expect:", *lines]), "check")
+    assert (status, reported.count(" PASS ")) == (0, 3)
     assert (
         of_two(f"expect: {{T_max: {newton(LP)} ± 0.1 %}}", "check")[0] == 1
     )  # the HP cylinder has less
@@ -263,7 +264,7 @@ def test_a_sweep_keeps_limits_of_those_they_name() -> None:
     bounds = (
         f"limits: {{LP.T_max: {newton(1.001 * LP)}, machine.T_max: {newton(1.001 * (HP + LP))}}}"
     )
-    asked = (
+    words = (
         "sweep",
         "--vary",
         "cylinders.1.bore=400,500,600 mm",
@@ -272,16 +273,16 @@ def test_a_sweep_keeps_limits_of_those_they_name() -> None:
         "--columns",
         "LP.T_max",
     )
-    status, told = of_two(bounds, *asked, "-f", "json")
-    found = [json.loads(line) for line in told.splitlines()]
-    assert (status, [one["broken"] for one in found]) == (
+    status, reported = of_two(bounds, *words, "-f", "json")
+    results = [json.loads(line) for line in reported.splitlines()]
+    assert (status, [result["broken"] for result in results]) == (
         0,
         [None, None, None, None, "LP.T_max", "LP.T_max"],
     )
-    told = of_two(
-        bounds, *asked, "-f", "json", "--set", "limits={}", "--set", "limits.machine.T_max=56 kN"
+    reported = of_two(
+        bounds, *words, "-f", "json", "--set", "limits={}", "--set", "limits.machine.T_max=56 kN"
     )[1]
-    assert [json.loads(line)["broken"] for line in told.splitlines()] == [None] * 2 + [
+    assert [json.loads(line)["broken"] for line in reported.splitlines()] == [None] * 2 + [
         "machine.T_max"
     ] * 4
 
@@ -290,7 +291,8 @@ def test_shipped_machines_keep_their_limits_and_the_figures_that_their_sources_p
     result = run("check", "-f", "json", *map(str, CONFIGS.values()))
     assert result.exit_code == 0, result.output
     messages = [
-        (Path(one["file"]).stem, one["message"]) for one in json.loads(result.stdout)["findings"]
+        (Path(finding["file"]).stem, finding["message"])
+        for finding in json.loads(result.stdout)["findings"]
     ]
     compared = {name for name, message in messages if ", expected " in message}
     assert compared == {"waterworks", "waterworks-two-cranks", "locomotive", "gas-engine"}
@@ -312,3 +314,63 @@ def test_check_lists_the_events_of_a_slide_valve() -> None:
         "release at 90 % (143.1 deg), compression 10 % before the dead centre (323.1 deg)\n"
     ) in printed.stdout
     assert "valve" not in run("check", str(CONFIGS["locomotive"])).stdout
+
+
+LIMITED = """
+speed: 60 rpm
+stroke: 800 mm
+rod: infinite
+limits: {c_max: 3 m/s, stroke: 0.7 m}
+expect: {v: 2.5 m/s ± 0.1 m/s}
+cases: [{name: fast, set: {speed: 75 rpm}}]
+"""
+"""c_max = v = R ω: 2.513274 m/s at 60, 3.141593 m/s at 75 per minute."""
+
+
+def test_json_has_every_verdict_with_its_figures_and_its_margin() -> None:
+    checked = run("check", "-", "-f", "json", text=LIMITED)
+    assert checked.exit_code == 1
+    findings = json.loads(checked.stdout)["findings"]
+    figures = {(row["id"], row["case"]): row for row in findings if row["verdict"]}
+    v = 0.8 * math.pi
+    c_max = figures["c_max", ""]
+    assert (c_max["scope"], c_max["unit"], c_max["verdict"]) == ("cylinder 1", "m/s", "PASS")
+    assert (c_max["value"], c_max["bound"]) == (pytest.approx(v), 3.0)
+    assert c_max["margin"] == pytest.approx((3 - v) / 3)
+    fast = figures["c_max", "fast"]
+    assert (fast["verdict"], fast["margin"]) == ("FAIL", pytest.approx((3 - 1.25 * v) / 3))
+    assert figures["stroke", ""]["margin"] == pytest.approx(-0.1 / 0.7)
+    expected = figures["v", ""]
+    assert expected["bound"] == [pytest.approx(2.4), pytest.approx(2.6)]
+    assert expected["margin"] == pytest.approx((2.6 - v) / 2.6)
+    others = [row for row in findings if not row["verdict"]]
+    assert others
+    assert all(row["value"] is row["bound"] is row["margin"] is None for row in others)
+
+
+def test_margins_of_limits_in_all_load_cases_are_a_table() -> None:
+    lines = run("check", "-", text=LIMITED).stdout.splitlines()
+    start = lines.index("Margins to the limits")
+    assert [line.split() for line in lines[start + 1 : start + 4]] == [
+        ["machine", "fast"],
+        ["c_max", "+16.2", "%", "-4.7", "%"],
+        ["stroke", "-14.3", "%", "-14.3", "%"],
+    ]
+    without_cases = LIMITED[: LIMITED.index("cases")]
+    assert "Margins" not in run("check", "-", text=without_cases).stdout
+
+
+def test_a_quiet_check_prints_what_fails() -> None:
+    quiet = run("check", "-", "--quiet", text=LIMITED)
+    assert quiet.exit_code == 1
+    names = [line.split(":")[1].strip() for line in quiet.stdout.splitlines()]
+    assert names == ["stroke", "c_max, fast", "stroke, fast", "v, fast"]
+    good = run("check", str(CONFIGS["waterworks"]), "-q")
+    assert (good.exit_code, good.stdout) == (0, "")
+
+
+def test_what_is_left_out_is_no_test_of_junit() -> None:
+    text = run("check", "-", "-f", "junit", text=LIMITED).stdout
+    assert "left out" in run("check", "-", text=LIMITED).stdout
+    names = [case.get("name") for case in ElementTree.fromstring(text).iter("testcase")]
+    assert names == ["c_max", "stroke", "c_max, fast", "stroke, fast", "v", "v, fast"]

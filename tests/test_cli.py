@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from command import limited, run
-from kurbel.cli import COMMANDS, group, kurbel
+from kurbel.cli import COMMANDS, checking, group, kurbel
 from representative import CONFIGS, few, law_of_each
 
 ESCAPE = b"\x1b"
@@ -136,7 +136,7 @@ def test_quick_commands_import_nothing_heavy() -> None:
     assert result.returncode == 0, result.stderr
 
 
-def test_a_width_is_filled_where_it_is_asked_for(solved_once: None) -> None:
+def test_a_width_is_filled_where_it_is_requested() -> None:
     """COLUMNS in a pipe, --width everywhere; no line is longer, and no word is broken."""
     machine = str(CONFIGS["waterworks"])
     for arguments in (["table"], ["forces", machine, "--layout", "rows"], ["check", machine]):
@@ -216,7 +216,7 @@ SELECTED = b"First selection. All columns, angles and key values: kurbel forces 
 
 
 @POSIX_ONLY
-def test_a_low_terminal_shows_a_first_selection_and_says_how_to_see_all() -> None:
+def test_a_low_terminal_shows_a_first_selection_and_shows_how_to_see_all() -> None:
     shown = on_terminal("forces", WATERWORKS, columns=80, rows=33, NO_COLOR="1").decode()
     whole = process("forces", WATERWORKS, COLUMNS="80").stdout.decode()
     lines = [line.rstrip() for line in shown.splitlines()]
@@ -248,7 +248,7 @@ def test_on_24_lines_nothing_scrolls_away() -> None:
 
 @POSIX_ONLY
 @pytest.mark.parametrize("more", [["--all"], ["--columns", "P"], ["--step", "5"], ["--key-values"]])
-def test_what_is_asked_for_is_shown_on_a_low_terminal_too(more: list[str]) -> None:
+def test_what_is_requested_is_shown_on_a_low_terminal_too(more: list[str]) -> None:
     shown = on_terminal("forces", WATERWORKS, *more, columns=80, rows=24, NO_COLOR="1")
     plain = process("forces", WATERWORKS, *more, COLUMNS="80").stdout
     assert shown.replace(b"\r\n", b"\n").splitlines() == plain.splitlines()
@@ -300,10 +300,62 @@ def test_example_lists_every_machine_with_its_first_line() -> None:
     assert all(len(line.split()) > 3 for line in lines)
 
 
-def test_example_prints_the_file_unchanged_in_any_encoding() -> None:
-    shipped = CONFIGS["waterworks"].read_bytes()
+def test_example_prints_the_file_with_the_line_for_editors_in_any_encoding() -> None:
+    modeline = b"# yaml-language-server: $schema=./kurbel.schema.json\n"
+    shipped = modeline + CONFIGS["waterworks"].read_bytes()
     assert run("example", "waterworks").stdout_bytes == shipped
     assert (
         process("example", "waterworks.yaml", PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout
         == shipped
     )
+
+
+def test_kurbel_alone_prints_its_help_and_ends_well() -> None:
+    alone = run()
+    assert alone.exit_code == 0
+    assert alone.stdout == run("--help").stdout
+
+
+def test_colours_are_forced_and_forbidden() -> None:
+    command = ("motion", str(CONFIGS["waterworks"]), "--columns", "b")
+    plain = process(*command)
+    assert b"\x1b[" not in plain.stdout
+    assert b"\x1b[" in process(*command, FORCE_COLOR="1").stdout
+    for variables in ({"FORCE_COLOR": "0"}, {"FORCE_COLOR": "1", "NO_COLOR": "1"}):
+        assert process(*command, **variables).stdout == plain.stdout
+
+
+def test_example_check_compares_the_expected_figures() -> None:
+    checked = run("example", "waterworks", "--check")
+    assert (checked.exit_code, checked.stdout) == (0, "waterworks  PASS  5 expected figures\n")
+    locomotive = run("example", "locomotive", "--check").stdout
+    assert locomotive == "locomotive  PASS  1 expected figure\n"
+    assert run("example", "nothing", "--check").exit_code == 2
+
+
+def test_example_check_fails_where_a_figure_is_off(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    file = tmp_path / "off.yaml"
+    file.write_text(
+        "{crank: 400 mm, rod_ratio: 5, expect: {stroke: 810 mm ± 1 mm}}", encoding="utf-8"
+    )
+    monkeypatch.setattr(checking, "file_of", lambda name: str(file))
+    checked = run("example", "locomotive", "--check")
+    assert checked.exit_code == 1
+    assert checked.stdout == "locomotive  FAIL  1 expected figure, off: stroke\n"
+
+
+def test_the_page_for_newcomers_is_short_and_names_every_command() -> None:
+    page = run("skill").stdout
+    assert len(page.splitlines()) <= 120
+    assert [
+        word for word in COMMANDS if word not in ("skill",) and f"kurbel {word}" not in page
+    ] == []
+
+
+def test_the_smallest_machine_on_the_page_for_newcomers_runs() -> None:
+    page = run("skill").stdout
+    _, _, after = page.partition("The smallest machine that runs:")
+    text, _, _ = after.partition("##")
+    assert run("forces", "-", text=text).exit_code == 0

@@ -390,15 +390,17 @@ def test_an_unloaded_end_is_not_copied_and_does_no_work() -> None:
 def test_a_row_for_each_load_case(command: str) -> None:
     file = CONFIGS["compressor-two-stage"]
     ids = {"forces": "rod_compression_max", "delivery": "capacity"}[command]
-    found = json.loads(run(command, file, "--cases", "--columns", ids, "-f", "json").stdout)
-    tables = {part["name"]: part["place_tables"][0] for part in found["cylinders"]}
+    result = json.loads(run(command, file, "--cases", "--columns", ids, "-f", "json").stdout)
+    tables = {part["name"]: part["place_tables"][0] for part in result["cylinders"]}
     assert len(tables) == 2
     for place, case in enumerate(("both ends", "one end unloaded", "relief pressure")):
         alone = json.loads(run(command, file, "--case", case, "--key-values", "-f", "json").stdout)
         for part in alone["cylinders"]:
             table = tables[part["name"]]
             assert table["rows"][place] == {"case": case}
-            value = next(one["value"] for one in part["key_values"] if one["id"] == ids)
+            value = next(
+                key_value["value"] for key_value in part["key_values"] if key_value["id"] == ids
+            )
             assert table["columns"][0]["values"][place] == value
 
 

@@ -20,6 +20,7 @@ from pathlib import Path
 import pytest
 
 import from_declarations  # tools/from_declarations.py
+import man_page
 import notebook  # tools/notebook.py
 import python_reference  # tools/python_reference.py
 import shipped  # tools/shipped.py
@@ -167,9 +168,9 @@ PYTHON = [page for page in [README, *PAGES] if ">>>" in text_of(page)]
 )
 def test_python_of_a_page(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
-    found = doctest.testfile(str(page), module_relative=False, encoding="utf-8")
-    assert found.attempted
-    assert found.failed == 0
+    result = doctest.testfile(str(page), module_relative=False, encoding="utf-8")
+    assert result.attempted
+    assert result.failed == 0
 
 
 GENERATED = {
@@ -182,6 +183,7 @@ GENERATED = {
     "reference/columns.md": from_declarations.columns,
     "reference/key-values.md": from_declarations.key_values,
     "reference/commands.md": from_declarations.commands,
+    "reference/kurbel.1": man_page.page,
 }
 
 
@@ -257,6 +259,6 @@ MODULES = [
 
 @law_of_each(MODULES)
 def test_examples_in_docstrings(module: str) -> None:
-    found = doctest.testmod(import_module(module))
-    assert found.attempted
-    assert found.failed == 0
+    result = doctest.testmod(import_module(module))
+    assert result.attempted
+    assert result.failed == 0

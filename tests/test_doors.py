@@ -123,15 +123,15 @@ def with_heads(modules: set[str]) -> set[str]:
 
 @cache
 def _with_its_heads(module: str) -> frozenset[str]:
-    found: set[str] = set()
+    result: set[str] = set()
     waiting = [module]
     while waiting:
         module = waiting.pop()
-        if module not in found:
-            found.add(module)
+        if module not in result:
+            result.add(module)
             outer = module.rpartition(".")[0]
             waiting += [*at_head(module), *([outer] if outer else [])]
-    return frozenset(found)
+    return frozenset(result)
 
 
 # what a run needs
@@ -191,17 +191,17 @@ def needed_by(machine: str, command: str) -> set[str]:
 def _of_limits(machine: str) -> set[str]:
     """Return the modules of the chapters down to those of the key values on which the file has limits."""
     given = case_of(machine).machine
-    found: set[str] = set()
+    result: set[str] = set()
     for name, _ in (*given.limits, *given.expect):
         id = name.rpartition(".")[2]
         for chapter in CHAPTERS:
-            found |= _of_door(chapter.door)
+            result |= _of_door(chapter.door)
             rows = result_rows(chapter.kind, closed=doors_of(chapter.kind))
             if id in rows.key_values:
                 break
         else:
             return _everything()
-    return found
+    return result
 
 
 def _of_compared(machine: str) -> set[str]:
@@ -223,14 +223,14 @@ def _of_door(door: Any) -> set[str]:
 
 def _of_command(command: str) -> set[str]:
     """Return the modules of a command: its report, and its chapters with the turning effort that they take."""
-    found = _of_door(COMMANDS[command].of)
+    result = _of_door(COMMANDS[command].of)
     for chapter in CHAPTERS:
         if chapter.command == command:
-            found |= _of_door(chapter.door)
+            result |= _of_door(chapter.door)
     if command in ("motion", "forces"):
-        return found
+        return result
     # what the case imports for it: the results of bearings come with the pins
-    return found | {"solver.effort"} | in_functions("solver.case").get(command, set())
+    return result | {"solver.effort"} | in_functions("solver.case").get(command, set())
 
 
 # what it loads

@@ -5,7 +5,6 @@ import pytest
 from command import printed
 from representative import CONFIGS, few
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 FOUR = str(CONFIGS["four-cylinder-generator"])
 EQUAL = """
 speed: 600 rpm
@@ -34,7 +33,7 @@ def test_four_equal_cylinders_stand_once_on_a_page(form: list[str]) -> None:
     assert page.splitlines()[0].endswith("Forces in the crank train: cylinders 1–4")
 
 
-def test_check_tells_equal_ones_once_and_each_of_their_cranks() -> None:
+def test_check_reports_equal_ones_once_and_each_of_their_cranks() -> None:
     page = printed("check", FOUR)
     assert page.count("left out   weight: no inclination given") == 1
     assert "\ncylinders 1–4\n" in page
@@ -46,7 +45,7 @@ def test_check_tells_equal_ones_once_and_each_of_their_cranks() -> None:
     assert "Cranks" not in printed("check", str(CONFIGS["waterworks"]))
 
 
-def test_one_that_differs_stands_alone() -> None:
+def test_one_that_differs_is_alone() -> None:
     """The third has no bore: the others are told together, their limits too."""
     each = "{crank: 50 mm, rod: 200 mm, masses: {piston: 1 kg}}"
     text = f"speed: 600 rpm\ncylinders: [{each}, {each}, {each.replace('1 kg', '2 kg')}, {each}]\n"
@@ -65,7 +64,7 @@ def pins(bank: int) -> dict[str, int]:
     }
 
 
-def test_check_tells_where_a_firing_order_puts_the_pins() -> None:
+def test_check_reports_where_a_firing_order_puts_the_pins() -> None:
     """Firing intervals of 90°: cylinder 5 at 90°, 4 at 180°, ...; a pin stands γ − β behind that of cylinder 1."""
     fires = {number: 90 * place for place, number in enumerate((1, 5, 4, 2, 6, 3, 7, 8))}
     for bank in (90, -90):

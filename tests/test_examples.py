@@ -11,7 +11,6 @@ from kurbel.machine import Machine
 from kurbel.machine_file import load
 from representative import SHIPPED, few
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 FITS: dict[str, Callable[[Machine], bool]] = {
     "check": lambda machine: True,
     "motion": lambda machine: bool(machine.cylinders),

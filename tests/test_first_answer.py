@@ -120,7 +120,7 @@ def test_the_first_page_of_the_report_has_the_same_figures() -> None:
 def test_the_three_losses_of_the_locomotive_after_redtenbacher() -> None:
     """r/l = 1/6, f = 1/10: D 5 with the logarithm 0.8242 %, as an integral 0.8280 %, D 7 1/120; D 6 F_m = ½ P f r/l."""
     (cylinder,) = answer("forces", LOCOMOTIVE)["cylinders"]
-    values = {one["id"]: one["value"] for one in cylinder["key_values"]}
+    values = {key_value["id"]: key_value["value"] for key_value in cylinder["key_values"]}
     assert values["loss_crosshead_logarithm"] == pytest.approx(0.008242, abs=5e-7)
     assert values["loss_crosshead_integral"] == pytest.approx(0.008280, abs=5e-7)
     assert values["loss_crosshead_redtenbacher"] == pytest.approx(1 / 120)
@@ -185,13 +185,14 @@ def test_the_new_key_values_in_sweeps_limits_and_conditions() -> None:
 
 def test_T_is_the_torque_over_the_crank_with_friction_in_pins_and_journals() -> None:
     (cylinder,) = answer("forces", "-", "--step", "0.5", text=PUMP)["cylinders"]
-    columns = {one["id"]: np.array(one["values"]) for one in cylinder["columns"]}
-    values = {one["id"]: one["value"] for one in cylinder["key_values"]}
+    columns = {column["id"]: np.array(column["values"]) for column in cylinder["columns"]}
+    values = {key_value["id"]: key_value["value"] for key_value in cylinder["key_values"]}
     assert columns["M"] == pytest.approx(columns["T"] * 0.1)
     assert values["W"] == pytest.approx(-11596.24, abs=0.005)
     assert values["T_min"] == pytest.approx(-35723.0, abs=0.5)
     whole = {
-        one["id"]: one["value"] for one in answer("flywheel", "-", text=PUMP)["machine_key_values"]
+        key_value["id"]: key_value["value"]
+        for key_value in answer("flywheel", "-", text=PUMP)["machine_key_values"]
     }
     assert (whole["T_min"], whole["W"]) == pytest.approx((values["T_min"], values["W"]), rel=1e-12)
     # the force at the pin alone, R 303, with the friction that the rod passes on to the guide
@@ -201,9 +202,9 @@ def test_T_is_the_torque_over_the_crank_with_friction_in_pins_and_journals() -> 
 # extremes at a jump
 
 
-def test_an_extreme_before_a_jump_says_so() -> None:
+def test_an_extreme_before_a_jump_is_marked() -> None:
     (cylinder,) = answer("forces", WATERWORKS)["cylinders"]
-    sides = {one["id"]: one.get("side", "") for one in cylinder["key_values"]}
+    sides = {key_value["id"]: key_value.get("side", "") for key_value in cylinder["key_values"]}
     assert {id for id, side in sides.items() if side} == {
         "P_max",
         "P_min",
@@ -219,7 +220,7 @@ def test_an_extreme_before_a_jump_says_so() -> None:
 
 def test_an_extreme_without_a_jump_has_no_side() -> None:
     (cylinder,) = answer("forces", str(CONFIGS / "diesel-trace.yaml"))["cylinders"]
-    assert not any("side" in one for one in cylinder["key_values"])
+    assert not any("side" in key_value for key_value in cylinder["key_values"])
 
 
 # rows that say nothing
@@ -245,7 +246,7 @@ def test_rows_that_repeat_others_or_are_zero_are_for_programs() -> None:
     head, *_ = printed("forces", "-", "-f", "csv", text=GAS_ALONE).splitlines()
     assert {"P_gas_N", "P_N", "S_N", "N_N", "M_Nm"} <= set(head.split(","))
     (cylinder,) = answer("forces", "-", text=GAS_ALONE)["cylinders"]
-    ids = {one["id"] for one in cylinder["key_values"]}
+    ids = {key_value["id"] for key_value in cylinder["key_values"]}
     assert {"P_peak", "T_peak", "N_max", "S_max", "P_start_max", "A_crank", "phi_idc"} <= ids
     assert {"P_gas", "N", "M"} <= rows_of(
         printed("forces", "-", "--columns", "P_gas,N,M", text=GAS_ALONE)

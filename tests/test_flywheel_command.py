@@ -10,8 +10,6 @@ import pytest
 from command import answer, printed, run
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 ENGINE = CONFIGS["waterworks"].read_text(encoding="utf-8")
 PUNCH = CONFIGS["punch"].read_text(encoding="utf-8")
 
@@ -22,30 +20,34 @@ def results(text: str, *arguments: str) -> dict[str, Any]:
 
 
 def values(text: str) -> dict[str, object]:
-    return {one["id"]: one["value"] for one in results(text)["machine_key_values"]}
+    return {
+        key_value["id"]: key_value["value"] for key_value in results(text)["machine_key_values"]
+    }
 
 
-def test_the_whole_machine_stands_under_its_own_keys() -> None:
+def test_the_whole_machine_is_under_its_own_keys() -> None:
     """The contract, 3: machine_columns, machine_key_values."""
-    found = results(ENGINE + "flywheel: {inertia: 50000 kg m2}\n", "--step", "90")
-    columns = {column["id"]: column["values"] for column in found["machine_columns"]}
+    result = results(ENGINE + "flywheel: {inertia: 50000 kg m2}\n", "--step", "90")
+    columns = {column["id"]: column["values"] for column in result["machine_columns"]}
     assert list(columns) == ["phi", "T", "T_inertia", "M", "E", "omega", "alpha"]
     assert columns["phi"] == [0, 90, 180, 270, 360]
     assert columns["E"][0] == 0
     assert columns["E"][-1] == pytest.approx(0, abs=1e-9)
     assert columns["M"] == pytest.approx([0.4 * force for force in columns["T"]])
-    ids = [one["id"] for one in found["machine_key_values"]]
+    ids = [key_value["id"] for key_value in result["machine_key_values"]]
     assert {"W", "M_mean", "dE", "delta", "J", "GD2", "omega_max", "omega_min"} <= set(ids)
-    assert found["cylinders"][0]["key_values"][0]["id"] == "P_dead_centre"
+    assert result["cylinders"][0]["key_values"][0]["id"] == "P_dead_centre"
 
 
 def test_the_wanted_fluctuation_gives_the_flywheel() -> None:
-    found = values(ENGINE + "flywheel: {fluctuation: 0.01}\n")
-    assert found["J"] == pytest.approx(found["dE"] / (0.01 * (100 * math.pi / 60) ** 2), rel=1e-13)
-    assert found["delta_book"] == pytest.approx(0.01, rel=1e-13)
-    assert found["delta"] == pytest.approx(0.01, rel=0.01)
+    result = values(ENGINE + "flywheel: {fluctuation: 0.01}\n")
+    assert result["J"] == pytest.approx(
+        result["dE"] / (0.01 * (100 * math.pi / 60) ** 2), rel=1e-13
+    )
+    assert result["delta_book"] == pytest.approx(0.01, rel=1e-13)
+    assert result["delta"] == pytest.approx(0.01, rel=0.01)
     both = values(ENGINE + "flywheel: {fluctuation: 0.01, inertia: 9000 kg m2}\n")
-    assert (both["J"], both["J_needed"]) == (9000, found["J"])
+    assert (both["J"], both["J_needed"]) == (9000, result["J"])
 
 
 LIGHT = """\
@@ -85,7 +87,7 @@ def warnings(text: str) -> str:
     return " ".join(results(text)["machine_warnings"])
 
 
-def test_a_resonance_is_told() -> None:
+def test_a_resonance_is_reported() -> None:
     coupling = "{stiffness: 1e6 N m/rad, inertia: 3000 kg m2, damping: 100 N m s/rad}"
     text = f"{ENGINE}flywheel: {{inertia: 20 t m2}}\ncoupling: {coupling}\n"
     assert "harmonic 4 of the torque" in warnings(text)
@@ -121,10 +123,10 @@ flywheel: {{inertia: {J} kg m2}}
 
 
 def angles_of(condition: str) -> list[float]:
-    found: list[float] = answer("flywheel", "--where", condition, "-", text=HARMONIC)[
+    result: list[float] = answer("flywheel", "--where", condition, "-", text=HARMONIC)[
         "machine_columns"
     ][0]["values"]
-    return found
+    return result
 
 
 @pytest.mark.parametrize(
@@ -146,7 +148,7 @@ def test_against_the_formulas(condition: str, degrees: list[float]) -> None:
 
 def test_a_speed_against_the_kinetic_energy() -> None:
     """½ J (ω² − ω_min²) = 80 (1 − cos φ)."""
-    asked = answer("flywheel", "--where", "omega = omega_min", "-", text=HARMONIC)
-    slowest = float(asked["machine_columns"][3]["values"][0])
+    words = answer("flywheel", "--where", "omega = omega_min", "-", text=HARMONIC)
+    slowest = float(words["machine_columns"][3]["values"][0])
     wanted = math.sqrt(slowest**2 + 2 * 80 * (1 - math.cos(math.radians(50))) / J)
     assert angles_of(f"omega = {wanted!r} rad/s") == pytest.approx([50, 310], rel=1e-11)

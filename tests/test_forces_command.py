@@ -6,8 +6,6 @@ from command import answer
 from good_machines import DEMO
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 WATERWORKS = str(CONFIGS["waterworks"])
 
 

@@ -8,11 +8,9 @@ import pytest
 
 from command import run
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 
 def answer(incline: float, coefficient: float, *words: str) -> dict[str, Any]:
-    found = run(
+    result = run(
         "friction",
         "--incline",
         str(incline),
@@ -22,8 +20,8 @@ def answer(incline: float, coefficient: float, *words: str) -> dict[str, Any]:
         "-f",
         "json",
     )
-    assert found.exit_code == 0, found.output
-    return json.loads(found.stdout)
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
 
 
 def forces(found: dict[str, Any]) -> dict[str, list[float | None]]:
@@ -36,12 +34,12 @@ def test_level_force_is_the_tangent_of_both_angles() -> None:
     rho = math.atan(0.1)
     (table,) = answer(30, 0.1)["machine_place_tables"]
     assert [column["symbol"] for column in table["columns"]] == ["P/Q", "P_1/Q"]
-    found = forces(answer(30, 0.1))
+    result = forces(answer(30, 0.1))
     alpha = math.radians(30)
-    assert found["P_up"] == pytest.approx(
+    assert result["P_up"] == pytest.approx(
         [0.5 + 0.1 * math.cos(alpha), math.tan(alpha + rho)], rel=1e-14
     )
-    assert found["P_held"] == pytest.approx(
+    assert result["P_held"] == pytest.approx(
         [0.5 - 0.1 * math.cos(alpha), math.tan(alpha - rho)], rel=1e-14
     )
 
@@ -49,10 +47,10 @@ def test_level_force_is_the_tangent_of_both_angles() -> None:
 @pytest.mark.parametrize("direction", [-20.0, 10.0, 45.0])
 def test_statics_of_the_body(direction: float) -> None:
     """Along the plane P cos β = Q sin α ± f N, across it N = Q cos α − P sin β."""
-    found = forces(answer(30, 0.2, "--direction", str(direction)))
+    result = forces(answer(30, 0.2, "--direction", str(direction)))
     alpha, beta = math.radians(30), math.radians(direction)
     for id, friction in (("P_up", 0.2), ("P_held", -0.2)):
-        force = found[id][0]
+        force = result[id][0]
         pressing = math.cos(alpha) - force * math.sin(beta)
         assert pressing > 0
         assert force * math.cos(beta) == pytest.approx(

@@ -89,11 +89,11 @@ def test_a_scope_means_one_part() -> None:
 )
 def test_every_command_with_key_values(command: str, file: str, names: list[str]) -> None:
     path = file if "/" in file else str(CONFIGS / f"{file}.yaml")
-    found = answer(command, path, "--key-values", *names)
-    parts = [*found.get("cylinders", []), *found.get("bearings", [])]
+    result = answer(command, path, "--key-values", *names)
+    parts = [*result.get("cylinders", []), *result.get("bearings", [])]
     chosen = [ids_of(part) for part in parts]
-    if "machine_key_values" in found:
-        chosen.append(ids_of(found, "machine_key_values"))
+    if "machine_key_values" in result:
+        chosen.append(ids_of(result, "machine_key_values"))
     assert names in chosen
     assert all(set(ids) <= set(names) for ids in chosen)
 

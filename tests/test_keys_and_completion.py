@@ -47,5 +47,5 @@ def test_what_a_shell_completes(words: str, some: list[str]) -> None:
 
 def test_cylinders_are_completed_from_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(CONFIGS["waterworks"].parent)
-    found = completed("kurbel forces four-cylinder-generator.yaml --cylinder ")
-    assert found == [f"cylinder {i}" for i in (1, 2, 3, 4)]
+    result = completed("kurbel forces four-cylinder-generator.yaml --cylinder ")
+    assert result == [f"cylinder {i}" for i in (1, 2, 3, 4)]

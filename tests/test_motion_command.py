@@ -16,8 +16,6 @@ import yaml
 
 from command import answer, run
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 FOLDER = Path(__file__).parent
 SLIDER = "crank: 400 mm\nrod: 2000 mm\n"
 FITTING = yaml.safe_load((FOLDER / "motion_of_mechanisms.yaml").read_text("utf-8"))

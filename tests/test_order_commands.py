@@ -7,7 +7,6 @@ import pytest
 from command import answer
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 BLOWER, SHIP = (str(CONFIGS[name]) for name in ("coupled-blower", "marine-diesel"))
 
 
@@ -28,47 +27,49 @@ def test_the_columns_that_scripts_rely_on() -> None:
         "M_inertia",
     ]
     assert orders["order"] == list(range(1, 25))
-    found = answer("torsion", SHIP)
-    assert [one["id"] for one in found["machine_place_tables"]] == [
+    result = answer("torsion", SHIP)
+    assert [one["id"] for one in result["machine_place_tables"]] == [
         "modes",
         "holzer",
         "critical_speeds",
         "pieces",
     ]
-    modes, critical = table(found, "modes"), table(found, "critical_speeds")
+    modes, critical = table(result, "modes"), table(result, "critical_speeds")
     assert list(modes)[:2] == ["mode", "frequency"]
     assert list(critical)[:3] == ["order", "mode", "speed"]
     assert (modes["mode"][:2], modes["frequency"][0]) == ([0, 1], 0)
     assert critical["order"] == list(range(1, 13)) * 3
     for order, mode, speed in zip(critical["order"], critical["mode"], critical["speed"]):
         assert speed == pytest.approx(modes["frequency"][int(mode)] / order, rel=1e-15)
-    assert all(isinstance(one["unit"], str) for one in found["machine_place_tables"][0]["columns"])
+    assert all(
+        isinstance(column["unit"], str) for column in result["machine_place_tables"][0]["columns"]
+    )
 
 
 def test_half_orders_of_four_strokes() -> None:
-    found = answer("harmonics", str(CONFIGS["four-cylinder-generator"]))
-    assert table(found, "orders")["order"] == [half / 2 for half in range(1, 49)]
-    marks = found["machine_place_tables"][0]["rows"]
+    result = answer("harmonics", str(CONFIGS["four-cylinder-generator"]))
+    assert table(result, "orders")["order"] == [half / 2 for half in range(1, 49)]
+    marks = result["machine_place_tables"][0]["rows"]
     assert [index / 2 + 0.5 for index, mark in enumerate(marks) if mark["kind"] == "major"] == list(
         range(2, 25, 2)
     )
-    assert len(found["cylinders"]) == 4
+    assert len(result["cylinders"]) == 4
 
 
 def test_orders_over_the_speed() -> None:
-    found = table(
+    result = table(
         answer("harmonics", BLOWER, "--speeds", "75, 150 rpm", "--orders", "1,3"), "orders_by_speed"
     )
-    assert (found["speed"], found["order"]) == ([1.25, 1.25, 2.5, 2.5], [1, 3, 1, 3])
+    assert (result["speed"], result["order"]) == ([1.25, 1.25, 2.5, 2.5], [1, 3, 1, 3])
     slow = table(answer("harmonics", BLOWER, "--set", "speed=75 rpm", "--orders", "1,3"), "orders")
-    assert found["M_cos"][:2] == pytest.approx(slow["M_cos"], rel=1e-12)
+    assert result["M_cos"][:2] == pytest.approx(slow["M_cos"], rel=1e-12)
 
 
 def test_every_piece_over_the_angle() -> None:
-    found = answer("torsion", SHIP, "--columns", "M_shaft,tau", "--step", "1")
-    pieces = found["cylinders"]
+    result = answer("torsion", SHIP, "--columns", "M_shaft,tau", "--step", "1")
+    pieces = result["cylinders"]
     assert len(pieces) == 8
-    shown = table(found, "pieces")
+    shown = table(result, "pieces")
     for number, piece in enumerate(pieces):
         columns = {column["id"]: column["values"] for column in piece["columns"]}
         assert max(columns["M_shaft"]) == pytest.approx(shown["M_shaft_max"][number], rel=1e-2)
@@ -78,8 +79,8 @@ def test_every_piece_over_the_angle() -> None:
 
 
 def test_over_the_speed_the_critical_one_is_the_worst() -> None:
-    found = answer("torsion", BLOWER, "--speeds", "60:90:1 rpm", "--orders", "3")
-    speeds, critical = table(found, "speeds"), table(found, "critical_speeds")
+    result = answer("torsion", BLOWER, "--speeds", "60:90:1 rpm", "--orders", "3")
+    speeds, critical = table(result, "speeds"), table(result, "critical_speeds")
     worst = max(range(31), key=speeds["M_vibratory"].__getitem__)
     assert speeds["speed"][worst] == pytest.approx(critical["speed"][0], abs=1.5 / 60)
     assert len(speeds["speed"]) == 31

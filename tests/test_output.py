@@ -79,7 +79,7 @@ def test_standard_input_is_a_file_that_is_read_too(tmp_path: Path) -> None:
 # files that are written
 
 
-def test_what_fails_half_way_leaves_the_old_file_and_nothing_beside_it(tmp_path: Path) -> None:
+def test_what_fails_half_way_leaves_the_old_file_and_nothing_next_to_it(tmp_path: Path) -> None:
     def interrupted() -> Iterator[str]:
         yield "half"
         raise KeyboardInterrupt
@@ -133,7 +133,7 @@ def test_a_replaced_file_keeps_its_mode_and_a_link_stays_one(tmp_path: Path) -> 
     ("name", "begin"),
     [("o.csv", "phi_deg"), ("o.JSON", "{"), ("o.md", "# "), ("o.txt", "m. Mot"), ("o", "m. Mot")],
 )
-def test_the_suffix_says_the_format(name: str, begin: str, tmp_path: Path) -> None:
+def test_the_suffix_decides_the_format(name: str, begin: str, tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(MACHINE)
     for arguments in (["motion", str(tmp_path / "m.yaml")], ["table"]):
         result = run(*arguments, "-o", tmp_path / name)
@@ -158,7 +158,7 @@ def test_a_format_that_contradicts_the_suffix_is_refused(tmp_path: Path) -> None
 # provenance
 
 
-def test_json_says_what_it_was_made_from(tmp_path: Path) -> None:
+def test_json_names_what_it_was_made_from(tmp_path: Path) -> None:
     trace = "".join(f"{angle},{1 + angle / 720}\n" for angle in range(0, 361, 10))
     (tmp_path / "p.csv").write_text(trace)
     text = MACHINE + "indicator: {head_end: {trace: {file: p.csv, unit: bar}}}\n"
@@ -194,7 +194,7 @@ UNHEARD = [(*end, stderr) for stderr in ("2>/dev/full", "2>&-") for end in ENDS]
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 @pytest.mark.parametrize(("arguments", "status", "stderr"), few(UNHEARD, UNHEARD[::2]))
-def test_no_status_hangs_on_standard_error(
+def test_no_status_depends_on_standard_error(
     arguments: str, status: int, stderr: str, tmp_path: Path
 ) -> None:
     (tmp_path / "m.yaml").write_text("crank: 400\n")

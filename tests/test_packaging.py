@@ -57,7 +57,8 @@ def check_examples(python: Path, folder: Path) -> None:
     listed = run(python, "-m", "kurbel", "example", folder=folder).splitlines()
     assert [line.split()[0] for line in listed] == MACHINES
     shown = run(python, "-m", "kurbel", "example", "waterworks", folder=folder)
-    assert shown == (ROOT / "configs" / "waterworks.yaml").read_text(encoding="utf-8")
+    _, _, printed = shown.partition("\n")  # after the line for editors
+    assert printed == (ROOT / "configs" / "waterworks.yaml").read_text(encoding="utf-8")
 
 
 def origin(python: Path, folder: Path) -> Path:
@@ -97,6 +98,7 @@ def test_wheel_and_sdist_hold_every_file_once(tmp_path: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
     assert sorted(Path(name).stem for name in names if name.endswith(".yaml")) == MACHINES
     assert all(f"kurbel/configs/{machine}.yaml" in names for machine in MACHINES)
+    assert any(name.endswith("share/man/man1/kurbel.1") for name in names)
     assert not [name for name in names if name.startswith(("tests", "benchmarks", "docs", "tools"))]
     python = installed(tmp_path, wheel)
     check_examples(python, tmp_path)

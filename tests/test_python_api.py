@@ -60,13 +60,13 @@ def same(found: Any, told: dict[str, Any]) -> None:
 def test_key_values_by_id_by_symbol_and_as_attributes(command: str, machine: str) -> None:
     case, parsed = solved(machine), printed(command, machine, "--key-values")
     results = case.cylinders[0] if command == "forces" else getattr(case, command)
-    told = (
+    reported = (
         parsed["cylinders"][0]["key_values"]
         if command == "forces"
         else parsed["machine_key_values"]
     )
-    assert set(results.key_values()) >= {one["id"] for one in told}
-    for one in told:
+    assert set(results.key_values()) >= {one["id"] for one in reported}
+    for one in reported:
         same(results[one["id"]], one)
         same(results[one["symbol"]], one)
         # what only some mechanisms have is no attribute, but is found by its name
@@ -128,7 +128,7 @@ PRESSURE = (
         ("e_K", "this machine has no loss_cross"),
     ],
 )
-def test_a_name_that_is_not_there_is_told(name: str, told: str) -> None:
+def test_a_name_that_is_not_there_is_reported(name: str, told: str) -> None:
     (cylinder,) = kurbel.solve(kurbel.loads(PLAIN % PRESSURE)).cylinders
     with pytest.raises(kurbel.KurbelError, match=told):
         _ = cylinder[name]
@@ -194,9 +194,9 @@ def test_a_machine_may_be_a_text_or_a_path(take: Any, given: str) -> None:
 @pytest.mark.parametrize("speed", [2.0, "120 rpm", np.float64(2)])
 def test_a_scalar_holds_for_every_row(speed: Any) -> None:
     """b_max of a slider-crank is R ω² (1 + R/L), at the inner dead centre."""
-    found = kurbel.sweep(kurbel.loads(FLAT), {"rod_ratio": [4, 5], "speed": speed}, ["b_max"])
+    result = kurbel.sweep(kurbel.loads(FLAT), {"rod_ratio": [4, 5], "speed": speed}, ["b_max"])
     ratios = np.array([1 / 4, 1 / 5])
-    assert found["b_max"] == pytest.approx(0.5 * (2 * math.pi * 2) ** 2 * (1 + ratios), rel=1e-12)
+    assert result["b_max"] == pytest.approx(0.5 * (2 * math.pi * 2) ** 2 * (1 + ratios), rel=1e-12)
 
 
 def test_a_figure_prints_as_people_read_it() -> None:

@@ -11,8 +11,6 @@ from kurbel.solver.figures import AtAngles, Results, result_rows
 from kurbel.tables.frame import Frame
 from representative import case_of
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 
 @pytest.mark.parametrize("missing", ["dead_centres", "coordinate", "slope", "curvature"])
 def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> None:
@@ -111,7 +109,7 @@ def test_the_largest_and_the_smallest_share_a_unit(
         report_of(case_of(name), Frame(command, (0.0,), (), system)).all_parts[part]
         for system in ("metric", "si")
     ]
-    told, in_si = ({key_value.id: key_value for key_value in one.key_values} for one in shown)
-    assert {id: told[id].unit for id in units} == units
+    reported, in_si = ({key_value.id: key_value for key_value in one.key_values} for one in shown)
+    assert {id: reported[id].unit for id in units} == units
     for id in units:
-        assert told[id].value * 1000 == pytest.approx(in_si[id].value, rel=1e-15)
+        assert reported[id].value * 1000 == pytest.approx(in_si[id].value, rel=1e-15)

@@ -1,44 +1,68 @@
-"""What is refused, by every command and in every file: `refused.txt` has the line, its status, and what is said; and
-beside it what is nearly the same and is not refused, what is left out, and what is noted. " … " stands between words
-of which each is said, and `not:` before those that are not."""
+"""What is refused, by every command and in every file, with its status and its words: the cases of `refused.yaml`.
+
+Among them are those that are nearly the same and are not refused, and what is left out or noted.
+"""
 
 import re
 import shlex
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
+import yaml
 
 from command import run
 from representative import CONFIGS
 
-PARTS = Path(__file__).with_name("refused.txt").read_text("utf-8").split("\n# ")
+SUBJECTS: dict[str, list[dict[str, object]]] = yaml.safe_load(
+    Path(__file__).with_name("refused.yaml").read_text("utf-8")
+)
 
 
-def told(line: str) -> str:
-    """Status and message of a line; <<< stands before the text of a machine file, \\x00 for a character."""
-    words = [
-        re.sub(r"\\x(..)", lambda code: chr(int(code[1], 16)), word)
-        for word in shlex.split(line)[2:]
-    ]
-    text = words.pop() if "<<<" in words else None
-    result = run(*[word for word in words if word != "<<<"], text=text)
-    assert not re.search("Traceback|\x1b", result.output)
-    return f"{result.exit_code} {' '.join((result.stderr + result.stdout).split())}"
+class Refusal(NamedTuple):
+    """A command, the text of a machine file on its standard input, and what its output says and does not say."""
+
+    command: str = "check -"
+    input: str | None = None
+    status: int = 2
+    says: tuple[str, ...] = ()
+    says_not: tuple[str, ...] = ()
+
+    @classmethod
+    def read(cls, keys: dict[str, object]) -> "Refusal":
+        """Return the case of these keys of the file; one sentence needs no list."""
+        assert keys.keys() <= {"command", "input", "status", "says", "not"}
+        rest = {key: value for key, value in keys.items() if key not in ("says", "not")}
+        return cls(says=_sentences(keys.get("says")), says_not=_sentences(keys.get("not")), **rest)
+
+    def failures(self) -> list[str]:
+        """Run the command, and return in which respects its status and its output differ from these."""
+        result = run(*shlex.split(self.command), text=self.input)
+        output = " ".join((result.stderr + result.stdout).split())
+        failures = [f"does not say: {words}" for words in self.says if words not in output]
+        failures += [f"says: {words}" for words in self.says_not if words in output]
+        if result.exit_code != self.status:
+            failures.append(f"status {result.exit_code}")
+        if re.search("Traceback|\x1b", output):
+            failures.append("a traceback, or an escape sequence")
+        if failures:
+            failures = [self.command, self.input or "", output, *failures]
+        return failures
 
 
-def fits(words: str, found: str) -> bool:
-    return all(
-        (one.removeprefix("not: ") in found) != one.startswith("not: ")
-        for one in words.split(" … ")
-    )
+def _sentences(value: object) -> tuple[str, ...]:
+    """Return the sentences of a key: one, a list, or none."""
+    if isinstance(value, str):
+        return (value,)
+    return tuple(value) if isinstance(value, list) else ()
 
 
-@pytest.mark.parametrize("part", PARTS, ids=[part.partition("\n")[0].strip("# ") for part in PARTS])
-def test_what_is_refused_and_with_which_words(part: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("subject", SUBJECTS)
+def test_what_is_refused_and_with_which_words(
+    subject: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(CONFIGS["waterworks"].parent)
-    there = sorted(Path().iterdir())
-    asked = re.findall(r"^(\$ .+)\n(\d) (.+)$", part, re.MULTILINE)
-    assert len(asked) == part.count("\n$ ")
-    found = [(line, status, words, told(line)) for line, status, words in asked]
-    assert [one for one in found if not (one[3].startswith(one[1]) and fits(one[2], one[3]))] == []
-    assert sorted(Path().iterdir()) == there
+    files = sorted(Path().iterdir())
+    failures = [Refusal.read(keys).failures() for keys in SUBJECTS[subject]]
+    assert [failure for failure in failures if failure] == []
+    assert sorted(Path().iterdir()) == files

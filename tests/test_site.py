@@ -86,14 +86,14 @@ def test_pages_fit_a_telephone(site: Path, tmp_path: Path) -> None:
     (site / "harness.html").write_text(text, encoding="utf-8")
     with served(site) as address:
         dom, _ = dumped(f"{address}/harness.html", tmp_path)
-    found = re.search(r'<pre id="found">(.*?)</pre>', dom, re.DOTALL)
-    assert found
-    assert json.loads(html.unescape(found[1])) == []
+    result = re.search(r'<pre id="found">(.*?)</pre>', dom, re.DOTALL)
+    assert result
+    assert json.loads(html.unescape(result[1])) == []
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
 @pytest.mark.parametrize("page", ["index.html", "theory.html", "reference/keys.html"])
-def test_a_page_says_nothing_and_asks_for_nothing_from_elsewhere(
+def test_a_page_has_no_message_and_needs_nothing_from_elsewhere(
     page: str, site: Path, tmp_path: Path
 ) -> None:
     with served(site) as address:

@@ -9,7 +9,6 @@ import pytest
 from command import run
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 PLACES = [
     *(("pin", place) for place in ("middle", "at_web_A", "at_web_B")),

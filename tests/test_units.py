@@ -10,8 +10,6 @@ from kurbel.declared.units import KINDS, ZEROED_UNITS, Kind, parse_quantity, uni
 from kurbel.errors import UnitError
 from representative import CONFIGS, case_of, law_of_each
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
 
 
@@ -19,7 +17,7 @@ UNITS = Path(__file__).with_name("units.txt").read_text("utf-8").splitlines()
 
 
 @law_of_each(tuple(line.split(" | ")[:3]) for line in UNITS if line[0] != "#")
-def test_values_by_definition_and_what_is_said_of_other_texts(
+def test_values_by_definition_and_what_is_written_of_other_texts(
     text: str, kind: str, value: str
 ) -> None:
     mark, _, said = value.partition(" ")
@@ -43,7 +41,7 @@ def test_every_unit_has_a_factor(kind: str) -> None:
             assert down > 0
 
 
-def test_a_unit_without_a_factor_says_where_it_is_added(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_unit_without_a_factor_reports_where_it_is_added(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(KINDS, "wear", Kind(0, 1, "m/h, furlong/h", "m/h"))
     assert unit_factor("m/h", "wear") == (1, 3600)
     with pytest.raises(
@@ -60,8 +58,8 @@ def test_every_shown_unit_can_be_read_back(kind: str) -> None:
 
 
 def test_the_size_chooses_among_metric_units() -> None:
-    found = [shown_unit("length", "metric", size) for size in (0.0, 0.4, 9.9, 12.0)]
-    assert found == ["mm", "mm", "mm", "m"]
+    results = [shown_unit("length", "metric", size) for size in (0.0, 0.4, 9.9, 12.0)]
+    assert results == ["mm", "mm", "mm", "m"]
     assert [shown_unit("pressure", "metric", size) for size in (50.0, -931632.0)] == ["mbar", "bar"]
     assert [shown_unit("force", "metric", size) for size in (999.0, 1e3, -2e6)] == ["N", "kN", "MN"]
     assert [shown_unit("force", system, 1e9) for system in ("si", "technical", "imperial")] == [
@@ -81,7 +79,7 @@ def test_the_size_chooses_among_metric_units() -> None:
         (("-f", "json"), "mm", 1e-3, "kN", 1e3),
     ],
 )
-def test_messages_are_told_in_the_units_asked_for(
+def test_messages_are_written_in_the_units_requested(
     words: tuple[str, ...], length: str, metres: float, force: str, newtons: float
 ) -> None:
     machine = CONFIGS["waterworks"]
@@ -92,5 +90,5 @@ def test_messages_are_told_in_the_units_asked_for(
     ):
         result = run("forces", machine, "--where", condition, *words)
         assert result.exit_code == 3
-        number, told = result.stderr.strip().rpartition(" to ")[2].split()
-        assert (float(number), told) == (pytest.approx(expected, rel=1e-5), unit)
+        number, reported = result.stderr.strip().rpartition(" to ")[2].split()
+        assert (float(number), reported) == (pytest.approx(expected, rel=1e-5), unit)

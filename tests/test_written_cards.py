@@ -25,7 +25,7 @@ def check(text: str) -> str:
 
 @pytest.mark.parametrize("cycle", ["two-stroke", "four-stroke"])
 @pytest.mark.parametrize("end", ["head_end", "crank_end"])
-def test_one_pressure_stands_on_every_stroke(end: str, cycle: str) -> None:
+def test_one_pressure_is_on_every_stroke(end: str, cycle: str) -> None:
     forces = forces_of(f"cycle: {cycle}\nindicator: {{{end}: 10 bar}}\n")
     state = forces.at([0, 10, 170, 190, 350])
     gauge = getattr(state, end.replace("head_end", "p_head").replace("crank_end", "p_crank"))

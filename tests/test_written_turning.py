@@ -98,8 +98,8 @@ def test_the_rim_of_the_wanted_flywheel() -> None:
 def test_a_rim_of_which_the_sizes_are_known(sizes: str, inertia: float) -> None:
     text = DIAGRAM + f"flywheel: {{rim: {{{sizes}}}}}\n"
     turning = solve(loads(text)).flywheel
-    found = turning.J
-    assert found == pytest.approx(inertia, rel=1e-14)
+    result = turning.J
+    assert result == pytest.approx(inertia, rel=1e-14)
     assert turning.delta_book == pytest.approx(
         turning.dE / (inertia * (4 * math.pi) ** 2), rel=1e-14
     )

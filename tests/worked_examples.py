@@ -48,20 +48,20 @@ QUESTION = re.compile(
 
 
 def question(row: dict[str, Any]) -> dict[str, str | None]:
-    found = QUESTION.fullmatch(row["ask"])
-    assert found, row["ask"]
-    return found.groupdict()
+    result = QUESTION.fullmatch(row["ask"])
+    assert result, row["ask"]
+    return result.groupdict()
 
 
 @cache
 def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
     """Run the command once for all the crank angles that the table asks of this file, or where a column has a value."""
-    asked = [question(row) for row in ASKED if row["file"] == file]
-    asked = [one for one in asked if (one["command"], one["where"]) == (command, where)]
-    angles = sorted({one["angle"] for one in asked if one["angle"]}, key=int) or ["0"]
-    columns = {str(one["id"]): "" for one in asked if one["angle"] or where}
+    request = [question(row) for row in ASKED if row["file"] == file]
+    request = [one for one in request if (one["command"], one["where"]) == (command, where)]
+    angles = sorted({one["angle"] for one in request if one["angle"]}, key=int) or ["0"]
+    columns = {str(one["id"]): "" for one in request if one["angle"] or where}
     arguments = [command, str(FOLDER / f"{file}.yaml")]
-    if any(one["rows"] for one in asked):
+    if any(one["rows"] for one in request):
         return answer_of(*arguments)
     arguments += ["--where", where] if where else ["--angles", ",".join(angles)]
     arguments += ["--columns", ",".join(("phi", *columns))] if columns else []
@@ -71,7 +71,7 @@ def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
 def of_table(parsed: dict[str, Any], asked: dict[str, str | None]) -> list[float]:
     """Return the values of a column in the rows of a table of the whole machine where others have these values."""
     table = next(one for one in parsed["machine_place_tables"] if one["id"] == asked["table"])
-    columns = {one["id"]: one["values"] for one in table["columns"]}
+    columns = {column["id"]: column["values"] for column in table["columns"]}
     rows = list(range(len(columns[str(asked["id"])])))
     for condition in str(asked["rows"]).split("; "):
         name, _, values = condition.partition("=")
@@ -83,34 +83,34 @@ def of_table(parsed: dict[str, Any], asked: dict[str, str | None]) -> list[float
 
 def told(row: dict[str, Any]) -> Any:
     """Return what kurbel answers, in SI units: a number or a list of them."""
-    asked = question(row)
-    parsed = answer(row["file"], asked["command"] or "", asked["where"])
-    if asked["rows"]:
-        return of_table(parsed, asked)
+    request = question(row)
+    parsed = answer(row["file"], request["command"] or "", request["where"])
+    if request["rows"]:
+        return of_table(parsed, request)
     parts = [
         {key.removeprefix("machine_"): what for key, what in parsed.items()},
         *parsed.get("cylinders", ()),
     ]
-    if asked["table"]:
+    if request["table"]:
         table = next(
             one
             for part in parts
             for one in part.get("place_tables", ())
-            if one["id"] == asked["table"]
+            if one["id"] == request["table"]
         )
-        return next(one for one in table["columns"] if one["id"] == asked["id"])["values"][
-            int(asked["nth"] or 0)
-        ]
-    kind = "columns" if asked["angle"] or asked["where"] else "key_values"
-    one = next(one for part in parts for one in part.get(kind, ()) if one["id"] == asked["id"])
-    if asked["angle"]:
+        return next(column for column in table["columns"] if column["id"] == request["id"])[
+            "values"
+        ][int(request["nth"] or 0)]
+    kind = "columns" if request["angle"] or request["where"] else "key_values"
+    one = next(one for part in parts for one in part.get(kind, ()) if one["id"] == request["id"])
+    if request["angle"]:
         at = next(one for part in parts for one in part.get(kind, ()) if one["id"] == "phi")[
             "values"
         ]
-        return one["values"][at.index(float(asked["angle"]))]
-    if asked["nth"]:
-        return one["values" if asked["where"] else "value"][int(asked["nth"])]
-    return one["at_deg" if asked["at"] else "value"]
+        return one["values"][at.index(float(request["angle"]))]
+    if request["nth"]:
+        return one["values" if request["where"] else "value"][int(request["nth"])]
+    return one["at_deg" if request["at"] else "value"]
 
 
 def expected(row: dict[str, Any]) -> tuple[Any, Any]:

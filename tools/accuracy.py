@@ -162,7 +162,7 @@ The speed of the shaft follows the load within an angle that falls with the slip
 heavy flywheel. Errors are relative to a collocation in 40 digits; other methods are Runge and Kutta's with fixed steps
 (RK4) and scipy's RK45, DOP853, Radau and LSODA, marched for 20 cycles at most or by shooting, that is by Newton's
 method for a cycle that repeats. They are given the torque, and no corners. The last column counts those that blow up or
-need more than 12 000 evaluations; times are relative to kurbel's, which computes the torque, too.
+need more than 12 000 evaluations (Radau, whose are dearer, 4000); times are relative to kurbel's, which computes the torque, too.
 
 {speed_table(report)}
 
@@ -173,8 +173,9 @@ Stiff and extreme machines go through the whole program, from the text of a file
 Some bounds are wide, because the value depends on the input so much: a volumetric efficiency of 1e-7, a coupling at
 order 99 of the torque with nothing to damp it, a crosshead just before it locks.
 
-Traces, journals in the bearings of a crankshaft, and an effort of which only the swing of energy is given have no second
-calculation in this command: it says so. All else is compared with free bodies of every member: a rod as a rigid body,
+Traces, whose work is the sum over their samples; journals in the bearings of a crankshaft, since who bears what is found
+with all cylinders together; and an effort of which only the swing of energy is given, which has no torque: these have
+no second calculation in this command, and it says so. All else is compared with free bodies of every member: a rod as a rigid body,
 friction in pins, yokes and rings, other mechanisms by where their joints are, events of a slide valve by searching.
 
 `python tools/accuracy.py` writes this page, `benchmarks/stiff_scenes.py` the references of the stiff scenes,

@@ -10,6 +10,16 @@ _PLACES = (
 )
 
 
+MODELINE = "# yaml-language-server: $schema=./kurbel.schema.json\n"
+"""First line of a machine file by which an editor finds what `kurbel schema` has written next to it."""
+
+
+def file_of(name: str) -> str:
+    """Return the path of a shipped machine."""
+    folder = next(filter(os.path.isdir, _PLACES))
+    return os.path.join(folder, f"{name}.yaml")
+
+
 def shipped() -> dict[str, str]:
     """Return the machines that come with kurbel: the text of each file by its name."""
     folder = next(filter(os.path.isdir, _PLACES))
@@ -18,6 +28,6 @@ def shipped() -> dict[str, str]:
     )
     texts = {}
     for name in names:
-        with open(os.path.join(folder, f"{name}.yaml"), encoding="utf-8") as file:
+        with open(file_of(name), encoding="utf-8") as file:
             texts[name] = file.read()
     return texts

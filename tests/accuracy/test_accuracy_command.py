@@ -140,7 +140,7 @@ def test_a_failed_extreme_case_ends_with_status_1(monkeypatch: pytest.MonkeyPatc
     assert run("accuracy", "--extremes").exit_code == 0
 
 
-def test_a_quantity_that_is_zero_is_not_examined_and_that_is_told() -> None:
+def test_a_quantity_that_is_zero_is_not_examined_and_that_is_reported() -> None:
     """Such a card does no work; what a quadrature makes of that is a rounding, to which nothing is relative."""
     zero = "{constant: {expansion: 0 bar, compression: 0 bar}}"
     idle = f"{{crank: 400 mm, rod: 2 m, bore: 450 mm, indicator: {{head_end: {zero}}}}}"

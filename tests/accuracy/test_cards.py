@@ -6,7 +6,8 @@ import pytest
 from kurbel import loads
 from kurbel.accuracy.cards import CardProcess, drawn
 from kurbel.accuracy.methods import mp
-from kurbel.accuracy.textbook import DIGITS, Textbook
+from kurbel.accuracy.references import Textbook
+from kurbel.accuracy.textbook import DIGITS
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.solver.case import Case
 

@@ -8,7 +8,7 @@ import pytest
 
 from kurbel.accuracy import trials
 from kurbel.accuracy.methods import by_quad, by_simpson, over_the_turn
-from kurbel.accuracy.textbook import unknown
+from kurbel.accuracy.references import unknown
 from kurbel.accuracy.trials import Trial, errors, examined, savings, with_corners, without_corners
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
@@ -37,31 +37,36 @@ def rows() -> list[Trial]:
 @pytest.mark.parametrize("quantity", ["x", "c", "b", "A_i", "T_max, T_min", "A_f", "ΔE"])
 def test_methods_converge(rows: list[Trial], quantity: str) -> None:
     """Equal divisions slowly; methods between the corners, and kurbel, to rounding."""
-    found = {(row.method, row.points): row.error or 0.0 for row in rows if row.quantity == quantity}
-    own = next(error for (method, _), error in found.items() if method == "kurbel")
+    results = {
+        (row.method, row.points): row.error or 0.0 for row in rows if row.quantity == quantity
+    }
+    own = next(error for (method, _), error in results.items() if method == "kurbel")
     assert own < 1e-13
     if quantity in "xcb":
-        assert found["textbook, radians", "closed"] < 1e-11
-        assert found["Chebyshev fit", "16"] > 1e3 * found["Chebyshev fit", "32"]
-        assert found["Chebyshev fit", "64"] < 1e-8
+        assert results["textbook, radians", "closed"] < 1e-11
+        assert results["Chebyshev fit", "16"] > 1e3 * results["Chebyshev fit", "32"]
+        assert results["Chebyshev fit", "64"] < 1e-8
         return
     by_tops = quantity[0] == "T"
     fit = "Chebyshev fit between the corners"
     simple = "largest ordinate" if by_tops else "trapezium rule"
-    assert found[simple, "36"] > 10 * found[simple, "360"] >= 10 * found[simple, "3600"]
-    assert found[fit, "8"] > found[fit, "16"]
-    assert found[fit, "32"] < 1e-13
+    assert results[simple, "36"] > 10 * results[simple, "360"] >= 10 * results[simple, "3600"]
+    assert results[fit, "8"] > results[fit, "16"]
+    assert results[fit, "32"] < 1e-13
     if not by_tops:
         assert (
-            found["Simpson's rule", "36"]
-            > 3 * found["Simpson's rule", "360"]
-            >= 3 * found["Simpson's rule", "3600"]
+            results["Simpson's rule", "36"]
+            > 3 * results["Simpson's rule", "360"]
+            >= 3 * results["Simpson's rule", "3600"]
         )
-        assert found["Gauss over the turn", "36"] > 3 * found["Gauss over the turn", "360"] > 1e-9
+        assert (
+            results["Gauss over the turn", "36"] > 3 * results["Gauss over the turn", "360"] > 1e-9
+        )
     if quantity[0] == "A":
-        assert found["spreadsheet", "36 rows"] > 10 * found["spreadsheet", "360 rows"] > 1e-9
+        assert results["spreadsheet", "36 rows"] > 10 * results["spreadsheet", "360 rows"] > 1e-9
     assert (
-        found["roots between the corners" if by_tops else "Gauss between the corners", "32"] < 1e-13
+        results["roots between the corners" if by_tops else "Gauss between the corners", "32"]
+        < 1e-13
     )
 
 
@@ -109,8 +114,8 @@ def test_the_fastest_rival_with_corners_has_all_digits() -> None:
 def test_rivals_without_corners_are_compared_at_the_time_of_kurbel() -> None:
     own, slow = row("kurbel", 1e-16, 1.0), row("Simpson's rule", 1e-9, 1.5)
     rough, better = row("trapezium rule", 1e-4, 0.1), row("trapezium rule", 1e-6, 0.9)
-    told = row("Gauss between the corners", 1e-16, 0.5)
-    assert without_corners([own, slow, rough, better, told]) == [(better, 0.9)]
+    reported = row("Gauss between the corners", 1e-16, 0.5)
+    assert without_corners([own, slow, rough, better, reported]) == [(better, 0.9)]
     assert without_corners([own, slow]) == []
 
 
@@ -142,20 +147,20 @@ def test_every_thing_left_out_saves_functions() -> None:
     machine = loads(
         SMOOTH.replace("flywheel", "friction: {crosshead: 0.05}, inclination: 0 deg, flywheel")
     )
-    found = list(
+    result = list(
         savings(machine, lambda one: Case(one).cylinders[0].at(np.arange(0.0, 361.0, 10.0)).T, True)
     )
-    assert [one.machine for one in found] == [
+    assert [one.machine for one in result] == [
         "everything",
         "no friction",
         "no masses either",
         "no cards either: motion alone",
         "no speed either: positions alone",
     ]
-    counts = [one.stages for one in found]
+    counts = [one.stages for one in result]
     assert counts == sorted(counts, reverse=True)
     assert counts[0] > counts[-1] > 0
-    assert found[0].ratio == 1.0
+    assert result[0].ratio == 1.0
     bare = [
         saving.machine
         for saving in savings(loads(BARE), lambda one: Case(one).cylinders[0].at([0.0]), True)

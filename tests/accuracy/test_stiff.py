@@ -88,7 +88,7 @@ def test_the_reference_is_that_of_another_method(shaft: TextbookShaft) -> None:
         before, every = y, [y]
         for low, high in pairwise(cuts):
             solved = integrate.solve_ivp(
-                lambda phi, y: problem.rate(problem.known(np.degrees(phi)), y.tolist()),
+                lambda phi, y: problem.rate(problem.torque_and_energy(np.degrees(phi)), y.tolist()),
                 (low, high),
                 every[-1],
                 method="DOP853",

@@ -85,8 +85,8 @@ def test_keys_within_a_trace_vary_with_another_key(key: str) -> None:
 
 
 def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
-    found = sweep(LIKE, {"cylinders.0.bore": ["2 m", "3 m"]}, ["A_head"])
-    areas = [found[f"{name}.A_head"] for name in "abc"]
+    result = sweep(LIKE, {"cylinders.0.bore": ["2 m", "3 m"]}, ["A_head"])
+    areas = [result[f"{name}.A_head"] for name in "abc"]
     assert areas == [
         pytest.approx(np.pi / 4 * np.array(bores) ** 2) for bores in ([2, 3], [2, 3], [2, 2])
     ]
@@ -114,20 +114,20 @@ def two_stages() -> str:
 def test_columns_of_stages_are_named_by_their_pistons(count: int) -> None:
     """Other suction at one end makes it a stage of its own: no column may then have the volume of another part."""
     suctions = [f"{1 + row / 100} bar" for row in range(count)]
-    found = sweep(
+    result = sweep(
         two_stages(),
         {"cylinders.0.indicator.head_end.compressor.suction": suctions},
         ["stroke_volume"],
     )
     areas = np.pi / 4 * np.array([0.32, 0.195]) ** 2
-    assert found["LP.stroke_volume"][0] == pytest.approx(2 * areas[0] * 0.18, rel=1e-12)
-    assert np.isnan(found["LP.stroke_volume"][1:]).all()
-    assert found["HP.stroke_volume"] == pytest.approx(
+    assert result["LP.stroke_volume"][0] == pytest.approx(2 * areas[0] * 0.18, rel=1e-12)
+    assert np.isnan(result["LP.stroke_volume"][1:]).all()
+    assert result["HP.stroke_volume"] == pytest.approx(
         np.full(count, 2 * areas[1] * 0.18), rel=1e-12
     )
     others = "it has other parts: no 'LP', but 'LP, head end', 'LP, crank end'"
-    assert not found["failure"][0]
-    assert all(set(text.split("'")) == set(others.split("'")) for text in found["failure"][1:])
+    assert not result["failure"][0]
+    assert all(set(text.split("'")) == set(others.split("'")) for text in result["failure"][1:])
 
 
 def test_a_bearing_of_other_neighbours_is_another_bearing() -> None:
@@ -139,10 +139,10 @@ cylinders:
   - {name: p, crank: 100 mm, rod: 400 mm, axial_position: 0 m, masses: {piston: 1 kg}}
   - {name: q, crank: 100 mm, rod: 400 mm, axial_position: 0.2 m, masses: {piston: 3 kg}, crank_position: 90 deg}
 """
-    found = sweep(text, {"cylinders.1.axial_position": ["0.2 m", "-0.2 m"]}, ["load_max"])
-    outer = found["bearing 1.load_max"]
+    result = sweep(text, {"cylinders.1.axial_position": ["0.2 m", "-0.2 m"]}, ["load_max"])
+    outer = result["bearing 1.load_max"]
     # ω² R (1 + λ) m of the piston next to it, half of which each of its bearings carries
     assert outer[0] == pytest.approx((20 * np.pi) ** 2 * 0.1 * 1.25 / 2, rel=1e-12)
     assert np.isnan(outer[1])
-    assert "'bearing 1 next to p', 'bearing 2 next to p, q'" in found["failure"][1]
-    assert "but 'bearing 1 next to q'" in found["failure"][1]
+    assert "'bearing 1 next to p', 'bearing 2 next to p, q'" in result["failure"][1]
+    assert "but 'bearing 1 next to q'" in result["failure"][1]

@@ -62,8 +62,8 @@ SWEEP = [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, "--columns", "T_ma
 def in_the_midst(cluster: Cluster, file: Path) -> subprocess.Popen[str]:
     """Return a sweep of 15,001 rows on two workers that has written some."""
     cluster.add_workers(2)
-    asked = [*SWEEP, "rod_ratio=3:6:0.0002", "--dask", cluster.address, "-o", str(file)]
-    process = subprocess.Popen(asked, stderr=subprocess.PIPE, text=True)
+    words = [*SWEEP, "rod_ratio=3:6:0.0002", "--dask", cluster.address, "-o", str(file)]
+    process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
     until_written(process, file.with_name("rows.csv.part"), 1000)
     return process
 
@@ -100,8 +100,8 @@ def test_a_killed_scheduler_is_named_and_resume_goes_on(cluster: Cluster, tmp_pa
 
 @pytest.mark.slow
 def test_a_cluster_without_workers_is_waited_for(cluster: Cluster) -> None:
-    asked = [*SWEEP, "rod_ratio=4,5", "-f", "csv", "--dask", cluster.address]
-    process = subprocess.Popen(asked, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    words = [*SWEEP, "rod_ratio=4,5", "-f", "csv", "--dask", cluster.address]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     limited(process, 300)
     assert process.stderr
     assert (

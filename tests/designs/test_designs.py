@@ -77,5 +77,5 @@ def test_a_text_varies_in_the_folder_that_it_was_read_in(
     trace = "trace: {file: trace.csv, unit: bar}"
     text = f"{{crank: 0.2 m, rod_ratio: 5, bore: 0.1 m, indicator: {{head_end: {{{trace}}}}}}}"
     machine = kurbel.loads(text, name="elsewhere/machine.yaml")
-    found = kurbel.sweep(machine, {"bore": [0.1, 0.2]}, ["P_max"])
-    assert found["P_max"][1] == pytest.approx(4 * found["P_max"][0], rel=1e-12)
+    result = kurbel.sweep(machine, {"bore": [0.1, 0.2]}, ["P_max"])
+    assert result["P_max"][1] == pytest.approx(4 * result["P_max"][0], rel=1e-12)

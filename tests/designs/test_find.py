@@ -24,12 +24,14 @@ def found_in(name: str, vary: str, *equations: str, **how: object) -> Solutions:
 
 def test_the_flywheel_of_a_fluctuation_is_the_one_that_kurbel_gives() -> None:
     """J_δ,ω of `kurbel flywheel` is found by another way: Newton's method on the speed line of one machine."""
-    found = found_in(
+    result = found_in(
         "waterworks-two-cranks", "flywheel.inertia=10000:80000 kg m2", "delta = 1/50"
     ).found
-    told = json.loads(run("flywheel", str(CONFIGS["waterworks-two-cranks"]), "-f", "json").stdout)
-    by_id = {one["id"]: one["value"] for one in told["machine_key_values"]}
-    assert [one.values[0] for one in found] == pytest.approx([by_id["J_exact"]], rel=1e-9)
+    reported = json.loads(
+        run("flywheel", str(CONFIGS["waterworks-two-cranks"]), "-f", "json").stdout
+    )
+    by_id = {key_value["id"]: key_value["value"] for key_value in reported["machine_key_values"]}
+    assert [one.values[0] for one in result] == pytest.approx([by_id["J_exact"]], rel=1e-9)
 
 
 def test_of_many_designs_none_that_stalls_searches_the_flywheel_that_would_do(
@@ -51,23 +53,23 @@ def test_of_many_designs_none_that_stalls_searches_the_flywheel_that_would_do(
 
 def test_the_offset_of_least_guide_force() -> None:
     """A kink, where N_max = −N_min: 29.237 mm and 4.0010 kN, against 5.99 kN without an offset."""
-    found = found_in("offset-engine", "offset=0:60 mm", least="N_peak").found[0]
-    assert found.values[0] == pytest.approx(29.237e-3, abs=5e-7)
-    assert found.key_values[0] == pytest.approx(4001.0, abs=0.05)
+    result = found_in("offset-engine", "offset=0:60 mm", least="N_peak").found[0]
+    assert result.values[0] == pytest.approx(29.237e-3, abs=5e-7)
+    assert result.key_values[0] == pytest.approx(4001.0, abs=0.05)
     both = [found_in("offset-engine", "offset=28:31 mm", f"{name} = {size!r} N") for name, size in (
-        ("N_max", found.key_values[0]), ("N_min", -found.key_values[0]),
+        ("N_max", result.key_values[0]), ("N_min", -result.key_values[0]),
     )]  # fmt: skip
     for one in both:
-        assert one.found[0].values[0] == pytest.approx(found.values[0], rel=1e-8)
+        assert one.found[0].values[0] == pytest.approx(result.values[0], rel=1e-8)
 
 
 def test_a_greatest_value_is_at_the_bound_of_a_condition() -> None:
     """c_m = 2 s n: at 50/min and 1.5 m/s the stroke is 0.9 m."""
-    found = found_in(
+    result = found_in(
         "waterworks", "stroke=600:1000 mm", greatest="power", conditions=["c_m < 1.5 m/s"]
     ).found[0]
-    assert found.values[0] == pytest.approx(0.9, rel=1e-9)
-    assert found.notes == ("beyond it: c_m < 1.5 m/s",)
+    assert result.values[0] == pytest.approx(0.9, rel=1e-9)
+    assert result.notes == ("beyond it: c_m < 1.5 m/s",)
 
 
 def test_a_flat_optimum_is_a_range() -> None:
@@ -85,8 +87,8 @@ def test_a_range_in_percent_is_one_of_shares(span: str) -> None:
     ended = run(
         "find", "-", "--vary", vary, "volumetric_efficiency = 50 %", "-f", "json", text=text
     )
-    (found,) = json.loads(ended.stdout)["found"]
-    assert found["values"] == pytest.approx([0.5 / (4 ** (1 / 1.3) - 1)], rel=1e-9)
+    (result,) = json.loads(ended.stdout)["found"]
+    assert result["values"] == pytest.approx([0.5 / (4 ** (1 / 1.3) - 1)], rel=1e-9)
 
 
 def test_two_planted_values_are_found_again() -> None:
@@ -94,10 +96,12 @@ def test_two_planted_values_are_found_again() -> None:
     case = json.loads(
         run("forces", str(CONFIGS["waterworks"]), "-f", "json", "--set", "rod_ratio=5").stdout
     )
-    by_id = {one["id"]: one["value"] for one in case["cylinders"][0]["key_values"]}
+    by_id = {
+        key_value["id"]: key_value["value"] for key_value in case["cylinders"][0]["key_values"]
+    }
     equations = [f"{id} = {by_id[id]!r} N" for id in ("T_max", "N_max")]
-    found = found_in("waterworks", "stroke=600:1000 mm; rod_ratio=4:8", *equations).found
-    assert [one.values for one in found] == [pytest.approx((0.8, 5.0), rel=1e-9)]
+    result = found_in("waterworks", "stroke=600:1000 mm; rod_ratio=4:8", *equations).found
+    assert [one.values for one in result] == [pytest.approx((0.8, 5.0), rel=1e-9)]
 
 
 def test_all_solutions_of_a_range() -> None:
@@ -106,68 +110,68 @@ def test_all_solutions_of_a_range() -> None:
         "{stroke: 1 m, rod_ratio: 5, speed: 60 rpm, masses: {piston: 100 kg}, inclination: 90 deg}"
     )
     origin = decode("<text>", text.encode())
-    found = find_solutions(origin, ["inclination=0:180 deg"], ["P_max = 2000 N"]).found
-    angles = [one.values[0] for one in found]
+    result = find_solutions(origin, ["inclination=0:180 deg"], ["P_max = 2000 N"]).found
+    angles = [one.values[0] for one in result]
     assert len(angles) == 2
     assert sum(angles) == pytest.approx(180.0, abs=1e-6)
 
 
 def test_parts_of_the_range_that_fail_are_reported() -> None:
-    found = found_in("waterworks", "rod_ratio=0.5:8", "N_max = 20 kN")
-    assert found.failed[0].low == 0.5
-    assert found.failed[0].high == pytest.approx(
+    result = found_in("waterworks", "rod_ratio=0.5:8", "N_max = 20 kN")
+    assert result.failed[0].low == 0.5
+    assert result.failed[0].high == pytest.approx(
         1.01**0.5, abs=1e-9
     )  # to 1 by the rule, beyond it the crosshead locks
-    assert "must be more than 1" in found.failed[0].why
-    assert len(found.found) == 1
+    assert "must be more than 1" in result.failed[0].why
+    assert len(result.found) == 1
 
 
 def test_the_written_file_has_what_was_wanted(tmp_path: Path) -> None:
     file = CONFIGS["waterworks-two-cranks"]
-    asked = ("find", str(file), "--vary", "flywheel.inertia=10000:80000 kg m2", "delta = 1/80")
-    written = run(*asked, "--write")
+    words = ("find", str(file), "--vary", "flywheel.inertia=10000:80000 kg m2", "delta = 1/80")
+    written = run(*words, "--write")
     new = tmp_path / "new.yaml"
     new.write_text(written.stdout, encoding="utf-8")
-    told = json.loads(run("flywheel", str(new), "-f", "json").stdout)
-    assert {one["id"]: one["value"] for one in told["machine_key_values"]}[
+    reported = json.loads(run("flywheel", str(new), "-f", "json").stdout)
+    assert {key_value["id"]: key_value["value"] for key_value in reported["machine_key_values"]}[
         "delta"
     ] == pytest.approx(1 / 80, rel=1e-10)
     comments = [
         line for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("#")
     ]
     assert [line for line in written.stdout.splitlines() if line.startswith("#")] == comments
-    row = run(*asked, "-f", "csv").stdout.splitlines()
+    row = run(*words, "-f", "csv").stdout.splitlines()
     assert row[0] == "row,flywheel.inertia_kgm2,delta"
     assert (
         float(row[1].split(",")[1])
-        == json.loads(run(*asked, "-f", "json").stdout)["found"][0]["values"][0]
+        == json.loads(run(*words, "-f", "json").stdout)["found"][0]["values"][0]
     )
 
 
 def test_of_several_solutions_one_is_taken() -> None:
     text = "{stroke: 1 m, rod_ratio: 5, speed: 60 rpm, masses: {piston: 100 kg}, inclination: 90 deg}\n"
-    asked = ("find", "-", "--vary", "inclination=0:180 deg", "P_max = 2000 N", "--write")
-    assert run(*asked, text=text).exit_code == 2
-    first, second = (run(*asked, "--take", str(number), text=text).stdout for number in (1, 2))
+    words = ("find", "-", "--vary", "inclination=0:180 deg", "P_max = 2000 N", "--write")
+    assert run(*words, text=text).exit_code == 2
+    first, second = (run(*words, "--take", str(number), text=text).stdout for number in (1, 2))
     assert first != second
     assert np.array([len(first), len(second)]).min() > 50
 
 
 def test_the_key_value_is_drawn_over_the_key(tmp_path: Path) -> None:
     """Every design that was computed is a point, the solutions are marked, and where designs fail there is no curve."""
-    found = found_in("waterworks", "rod_ratio=0.5:8", "N_max = 20 kN")
-    (panel,) = picture(found, "metric").panels
+    result = found_in("waterworks", "rod_ratio=0.5:8", "N_max = 20 kN")
+    (panel,) = picture(result, "metric").panels
     curve, wanted = panel.curves
-    computed = found.values[:, 0]
+    computed = result.values[:, 0]
     whole = np.isfinite(computed)
-    assert (curve.x[np.isfinite(curve.x)] == found.places[whole, 0]).all()
+    assert (curve.x[np.isfinite(curve.x)] == result.places[whole, 0]).all()
     assert (curve.y[np.isfinite(curve.y)] == computed[whole] / 1e3).all()
-    assert len(curve.pieces()) == len(found.failed) == 1
+    assert len(curve.pieces()) == len(result.failed) == 1
     assert curve.jumps() == []
     assert np.nanmin(curve.x) > 1.01**0.5  # below, the crosshead locks itself
     assert wanted.y.tolist() == [20.0, 20.0]
     assert [(mark.x, mark.y) for mark in panel.marks] == [
-        (found.found[0].values[0], pytest.approx(20.0))
+        (result.found[0].values[0], pytest.approx(20.0))
     ]
     level = picture(found_in("waterworks", "speed=40:60 rpm", least="stroke"), "metric")
     assert len(level.panels[0].curves) == 1
@@ -220,19 +224,19 @@ def test_the_lowest_place_of_narrow_curved_valleys(
     function: Callable[[Array], Array], place: tuple[float, ...]
 ) -> None:
     """Smooth, with a kink along the valley, at an edge, and at the end of what counts."""
-    found, value = lowest(function, 2)
+    result, value = lowest(function, 2)
     expected = 1.5 if place == (0.5, 0.5) else 1.0
     assert value == pytest.approx(expected, rel=1e-11)
-    assert found == pytest.approx(np.array(place), abs=2e-6)
+    assert result == pytest.approx(np.array(place), abs=2e-6)
 
 
 def test_an_end_of_the_range_may_fail_by_what_is_wanted() -> None:
     """The vessel of this end would empty: ΔV/2 is 11.3 cm³."""
-    found = found_in(
+    result = found_in(
         "triplex-pump", "pump.delivery_pipe.vessel.volume=0.001:10 l", "vessel_swing = 1 %"
     )
-    assert len(found.found) == 1
-    assert "would empty" in found.failed[0].why
+    assert len(result.found) == 1
+    assert "would empty" in result.failed[0].why
     vary = (
         "--vary",
         "pump.delivery_pipe.vessel.volume=0.001,1 l",
@@ -264,8 +268,10 @@ def test_round_questions_have_the_ends_of_their_range_as_solutions(
     )
     for stroke in (low, (low + high) / 2, high):
         wanted = f"{stroke * rpm / 30000:.10g}"
-        found = find_solutions(origin, [f"stroke={low}:{high} mm"], [f"c_m = {wanted} m/s"]).found
-        assert [one.values[0] for one in found] == pytest.approx([stroke / 1000], rel=1e-12), wanted
+        result = find_solutions(origin, [f"stroke={low}:{high} mm"], [f"c_m = {wanted} m/s"]).found
+        assert [one.values[0] for one in result] == pytest.approx([stroke / 1000], rel=1e-12), (
+            wanted
+        )
 
 
 @pytest.mark.parametrize(

@@ -105,17 +105,19 @@ def fault(origin: Origin, random: np.random.Generator) -> str | None:
             continue
         scan = of(name, np.linspace(0.0, 1.0, SCANNED)) - value
         unit_of = SI[requested_answers(loads(origin.text), [name])[0].kind]
-        found = find_solutions(
+        result = find_solutions(
             origin,
             [f"{key}={low!r}:{high!r} {unit}"],
             [f"{name} = {float(value)!r} {unit_of}".strip()],
         )
-        span = found.varied[0].high - found.varied[0].low
-        every = (*found.found, *found.jumps)
-        places = np.array([(solution.values[0] - found.varied[0].low) / span for solution in every])
+        span = result.varied[0].high - result.varied[0].low
+        every = (*result.found, *result.jumps)
+        places = np.array(
+            [(solution.values[0] - result.varied[0].low) / span for solution in every]
+        )
         slope = abs(after - before) / 2e-4
         missed = abs(places - share).min()
-        if missed > max(1e-9, 1e-12 * np.nanmax(np.abs(found.values)) / slope):
+        if missed > max(1e-9, 1e-12 * np.nanmax(np.abs(result.values)) / slope):
             return f"{name} over {key}: {missed} from what was planted"
         crossings = np.count_nonzero(scan[:-1] * scan[1:] < 0) + np.count_nonzero(scan == 0)
         return (
@@ -132,16 +134,16 @@ def test_planted_values_are_found_and_none_is_missed(first: int) -> None:
     faults = list[str]()
     for seed in range(first, first + 20):
         random = np.random.default_rng(seed)
-        if found := fault(decode("<random>", engine(random).encode()), random):
-            faults.append(f"{seed}: {found}")
+        if result := fault(decode("<random>", engine(random).encode()), random):
+            faults.append(f"{seed}: {result}")
     assert faults == []
 
 
 @pytest.mark.slow
 def test_planted_values_in_machines_of_books() -> None:
-    found = []
+    results = []
     for seed in range(30):
         random = np.random.default_rng(seed)
-        found.append(fault(read(EXAMPLES[random.integers(len(EXAMPLES))]), random))
-    assert found.count("") > 2
-    assert set(found) <= {None, ""}
+        results.append(fault(read(EXAMPLES[random.integers(len(EXAMPLES))]), random))
+    assert results.count("") > 2
+    assert set(results) <= {None, ""}

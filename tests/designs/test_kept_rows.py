@@ -62,9 +62,9 @@ def test_another_sweep_does_not_go_on(
 ) -> None:
     file = interrupted(machine, *ASKED, "-f", written)
     before = file.read_bytes()
-    asked = others if others[0] == "--vary" else ASKED[:2] + others
-    asked += () if "--columns" in others else ASKED[2:]
-    result = run("sweep", machine, *asked, "-f", written, "-o", str(file), "--resume")
+    words = others if others[0] == "--vary" else ASKED[:2] + others
+    words += () if "--columns" in others else ASKED[2:]
+    result = run("sweep", machine, *words, "-f", written, "-o", str(file), "--resume")
     assert result.exit_code == 2
     assert f"--resume: {file} is not of this sweep: " in result.output
     assert message in result.output
@@ -72,12 +72,12 @@ def test_another_sweep_does_not_go_on(
 
 
 def test_chosen_rows_go_on_where_they_end(machine: Path) -> None:
-    asked = (*ASKED, "--where", "T_max < 88.5 kN")
-    whole = interrupted(machine, *asked, rows=99).read_bytes()
-    file = interrupted(machine, *asked, rows=2)
-    assert run("sweep", machine, *asked, "-o", str(file), "--resume").exit_code == 0
+    words = (*ASKED, "--where", "T_max < 88.5 kN")
+    whole = interrupted(machine, *words, rows=99).read_bytes()
+    file = interrupted(machine, *words, rows=2)
+    assert run("sweep", machine, *words, "-o", str(file), "--resume").exit_code == 0
     assert file.read_bytes() == whole
-    file = interrupted(machine, *asked, rows=2)
+    file = interrupted(machine, *words, rows=2)
     assert "is missing in it" in run("sweep", machine, *ASKED, "-o", str(file), "--resume").output
 
 

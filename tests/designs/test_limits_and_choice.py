@@ -17,10 +17,10 @@ def numbers(*args: str) -> list[object]:
 def test_a_limit_that_cannot_be_judged_is_not_kept() -> None:
     """Without a flywheel there is no δ, as `check` says; all rows were told to keep the bound on it."""
     delta = ("--set", "limits.delta=1/50")
-    (found,) = rows("--vary", "rod_ratio=5", "--columns", "N_max", *delta)
-    assert (found["keeps"], found["broken"]) == (None, None)
-    assert found["failure"] == "limits.delta: this machine has no delta"
-    assert found["N_max_N"] == pytest.approx(
+    (result,) = rows("--vary", "rod_ratio=5", "--columns", "N_max", *delta)
+    assert (result["keeps"], result["broken"]) == (None, None)
+    assert result["failure"] == "limits.delta: this machine has no delta"
+    assert result["N_max_N"] == pytest.approx(
         kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]["N_max"].value
     )
     (broken,) = rows(
@@ -29,41 +29,41 @@ def test_a_limit_that_cannot_be_judged_is_not_kept() -> None:
     assert (broken["keeps"], broken["broken"], broken["failure"]) == (
         False,
         "N_max",
-        found["failure"],
+        result["failure"],
     )
     judged = rows("--vary", "flywheel.inertia=1e4,5e4 kg m2", "--columns", "N_max", *delta)
     assert [(one["keeps"], one["failure"]) for one in judged] == [(False, None), (True, None)]
 
 
 def test_rows_are_chosen_by_their_texts() -> None:
-    asked = (*RATIOS, "--columns", "N_max", "--set", "limits.N_max=20 kN")
-    assert numbers(*asked, "--where", "keeps = yes") == [4, 5]
+    words = (*RATIOS, "--columns", "N_max", "--set", "limits.N_max=20 kN")
+    assert numbers(*words, "--where", "keeps = yes") == [4, 5]
     assert (
-        numbers(*asked, "--where", "keeps == no")
-        == numbers(*asked, "--where", "broken = N_max")
+        numbers(*words, "--where", "keeps == no")
+        == numbers(*words, "--where", "broken = N_max")
         == [2, 3]
     )
-    assert numbers(*asked, "--where", "failure =") == [2, 3, 4, 5]
-    assert numbers(*asked, "--where", "failure ≠") == [1]
+    assert numbers(*words, "--where", "failure =") == [2, 3, 4, 5]
+    assert numbers(*words, "--where", "failure ≠") == [1]
 
 
 def test_an_infinite_rod_is_the_longest() -> None:
     """It stands in the table as a word, and counted as having no length: no front of Pareto had it."""
-    asked = ("--vary", "rod_ratio=4,infinite,0.5,3", "--columns", "T_max")
-    assert numbers(*asked, "--sort", "-rod_ratio") == [2, 1, 4, 3]
-    assert numbers(*asked, "--sort", "rod_ratio") == [3, 4, 1, 2]
-    assert numbers(*asked, "--pareto", "rod_ratio,T_max") == [1, 2, 4]
-    assert numbers(*asked, "--pareto", "-rod_ratio,T_max") == [2]
-    assert numbers(*asked, "--where", "rod_ratio > 3.5") == [1, 2]
-    assert numbers(*asked, "--where", "rod_ratio = infinite") == [2]
+    words = ("--vary", "rod_ratio=4,infinite,0.5,3", "--columns", "T_max")
+    assert numbers(*words, "--sort", "-rod_ratio") == [2, 1, 4, 3]
+    assert numbers(*words, "--sort", "rod_ratio") == [3, 4, 1, 2]
+    assert numbers(*words, "--pareto", "rod_ratio,T_max") == [1, 2, 4]
+    assert numbers(*words, "--pareto", "-rod_ratio,T_max") == [2]
+    assert numbers(*words, "--where", "rod_ratio > 3.5") == [1, 2]
+    assert numbers(*words, "--where", "rod_ratio = infinite") == [2]
 
 
 def test_rows_are_chosen_by_printed_symbols() -> None:
-    asked = (*RATIOS, "--columns", "dE,P_start_max")
+    words = (*RATIOS, "--columns", "dE,P_start_max")
     assert (
-        numbers(*asked, "--sort", "-ΔE", "--top", "1") == numbers(*asked, "--pareto", "-ΔE") == [2]
+        numbers(*words, "--sort", "-ΔE", "--top", "1") == numbers(*words, "--pareto", "-ΔE") == [2]
     )
-    assert numbers(*asked, "--where", "P_0,max ≥ 1 N", "--where", "rod_ratio ≤ 4") == [2, 3]
+    assert numbers(*words, "--where", "P_0,max ≥ 1 N", "--where", "rod_ratio ≤ 4") == [2, 3]
     of_machine = rows(
         *RATIOS, "--columns", "machine.T_max", "--sort", "-machine.T_max", "--top", "1"
     )
@@ -77,20 +77,20 @@ def test_rows_are_chosen_by_printed_symbols() -> None:
 def test_every_extreme_has_its_angle() -> None:
     """Not of `forces` alone: ω_max of the speed line, loads and stresses stand somewhere, too."""
     file = str(CONFIGS["gas-engine"])
-    (found,) = rows(
+    (result,) = rows(
         "--vary", "speed=200 rpm", "--columns", "P_dc,sigma_pin_max,E_max,dE", "--angles", file=file
     )
     case = kurbel.solve(kurbel.load(file, ["speed=200 rpm"]))
-    assert found["E_max_at_deg"] == case["E_max"].degrees
-    assert found["sigma_pin_max_at_deg"] == case["sigma_pin_max"].degrees
-    assert {"P_dc_at_deg", "dE_at_deg"} & set(found) == {"P_dc_at_deg"}
+    assert result["E_max_at_deg"] == case["E_max"].degrees
+    assert result["sigma_pin_max_at_deg"] == case["sigma_pin_max"].degrees
+    assert {"P_dc_at_deg", "dE_at_deg"} & set(result) == {"P_dc_at_deg"}
 
 
-def test_python_is_told_why_the_only_design_fails() -> None:
+def test_python_gets_the_reason_why_the_only_design_fails() -> None:
     """As an optimiser may ask for one design at a time, and for one key value of it."""
-    found = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, "N_max")
-    assert np.isnan(found["N_max"]).tolist() == [True]
-    assert found["failure"].tolist() == ["rod_ratio: 0.5 is too small; it must be more than 1"]
+    result = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, "N_max")
+    assert np.isnan(result["N_max"]).tolist() == [True]
+    assert result["failure"].tolist() == ["rod_ratio: 0.5 is too small; it must be more than 1"]
 
 
 @pytest.mark.parametrize("aims", [1, 2, 3, 4])

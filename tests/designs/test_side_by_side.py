@@ -118,7 +118,7 @@ def test_key_values_of_other_commands(name: str, key: str, values: list[str], co
     assert farthest(CONFIGS[name], {key: values}, columns.split()) <= (1e-11, "~")
 
 
-def test_one_that_locks_itself_fails_beside_others_with_the_reason_that_it_has_alone(
+def test_one_that_locks_itself_fails_among_others_with_the_reason_that_it_has_alone(
     tmp_path: Path,
 ) -> None:
     file = tmp_path / "steam.yaml"
@@ -143,8 +143,8 @@ def test_flywheels_on_both_sides_of_their_bearing(tmp_path: Path) -> None:
 
 def test_a_crosshead_that_locks_itself_has_no_forces_among_others() -> None:
     """f tan ψ ≥ 1 with f = 0.1 where R/L ≥ 1/√(1 + f²), L/R ≤ 1.00499."""
-    found = sweep(
+    result = sweep(
         CONFIGS["waterworks"], {"rod_ratio": ["1.002", "1.003", "1.004", "1.006", "5"]}, "S_max"
     )
-    assert ["locks itself" in why for why in found["failure"]] == [True, True, True, False, False]
-    assert np.isnan(found["S_max"]).tolist() == [True, True, True, False, False]
+    assert ["locks itself" in why for why in result["failure"]] == [True, True, True, False, False]
+    assert np.isnan(result["S_max"]).tolist() == [True, True, True, False, False]

@@ -14,8 +14,8 @@ from kurbel.designs import sweep as sweeps
 from swept_rows import CONFIGS, WATERWORKS, rows, run, until_written
 
 
-def test_rows_are_what_forces_tells_of_each() -> None:
-    found = rows(
+def test_rows_are_what_forces_reports_of_each() -> None:
+    result = rows(
         "--vary",
         "rod_ratio=4,5",
         "--vary",
@@ -24,13 +24,13 @@ def test_rows_are_what_forces_tells_of_each() -> None:
         "T_max,p_i,φ_P=0",
         "--angles",
     )
-    assert [(one["rod_ratio"], one["row"]) for one in found] == [
+    assert [(one["rod_ratio"], one["row"]) for one in result] == [
         (4.0, 1),
         (4.0, 2),
         (5.0, 3),
         (5.0, 4),
     ]
-    for one, (ratio, speed) in zip(found, [(4, 40), (4, 50), (5, 40), (5, 50)]):
+    for one, (ratio, speed) in zip(result, [(4, 40), (4, 50), (5, 40), (5, 50)]):
         machine = kurbel.load(WATERWORKS, [f"rod_ratio={ratio}", f"speed={speed} rpm"])
         single = kurbel.solve(machine).cylinders[0]
         assert one["speed_rps"] == speed / 60
@@ -45,7 +45,7 @@ def test_rows_are_what_forces_tells_of_each() -> None:
 
 def test_keys_that_go_together_in_a_grid() -> None:
     """Bore and rod of one size beside each other, each with every speed."""
-    found = rows(
+    result = rows(
         "--vary",
         "bore=400,450 mm; head_end_rod=70,80 mm",
         "--vary",
@@ -53,16 +53,16 @@ def test_keys_that_go_together_in_a_grid() -> None:
         "--columns",
         "A_head,c_max",
     )
-    assert [(one["bore_m"], one["head_end_rod_m"]) for one in found] == [(0.4, 0.07)] * 2 + [
+    assert [(one["bore_m"], one["head_end_rod_m"]) for one in result] == [(0.4, 0.07)] * 2 + [
         (0.45, 0.08)
     ] * 2
-    for one in found:
+    for one in result:
         area = np.pi / 4 * (one["bore_m"] ** 2 - one["head_end_rod_m"] ** 2)
         assert one["A_head_m^2"] == pytest.approx(area, rel=1e-14)
-    assert found[1]["c_max_m/s"] == pytest.approx(found[0]["c_max_m/s"] * 5 / 4, rel=1e-14)
+    assert result[1]["c_max_m/s"] == pytest.approx(result[0]["c_max_m/s"] * 5 / 4, rel=1e-14)
 
 
-def test_without_a_cylinder_rows_are_what_flywheel_tells(tmp_path: Path) -> None:
+def test_without_a_cylinder_rows_are_what_flywheel_reports(tmp_path: Path) -> None:
     """T = 9 + 5 cos 2φ N m: ΔE = 5 N m, W = 18π J; a machine without key values of `forces` was a fault of kurbel."""
     machine = tmp_path / "effort.yaml"
     machine.write_text(
@@ -98,16 +98,16 @@ def test_cylinders_that_work_alike_have_one_column_in_a_table(tmp_path: Path) ->
 
 
 def test_a_row_that_fails_stays_with_its_reason() -> None:
-    found = rows("--vary", "rod_ratio=0.5,2", "--columns", "T_max")
-    assert found[0]["T_max_N"] is None
-    assert found[0]["failure"] == "rod_ratio: 0.5 is too small; it must be more than 1"
-    assert found[1]["failure"] is None
+    result = rows("--vary", "rod_ratio=0.5,2", "--columns", "T_max")
+    assert result[0]["T_max_N"] is None
+    assert result[0]["failure"] == "rod_ratio: 0.5 is too small; it must be more than 1"
+    assert result[1]["failure"] is None
 
 
 def test_key_values_of_other_commands_and_limits() -> None:
     file = str(CONFIGS["waterworks-two-cranks"])
-    found = rows("--vary", "flywheel.fluctuation=1/80,1/100", "--columns", "dE,J,c_max", file=file)
-    for one, fluctuation in zip(found, ("1/80", "1/100")):
+    result = rows("--vary", "flywheel.fluctuation=1/80,1/100", "--columns", "dE,J,c_max", file=file)
+    for one, fluctuation in zip(result, ("1/80", "1/100")):
         turning = kurbel.solve(kurbel.load(file, [f"flywheel.fluctuation={fluctuation}"])).flywheel
         assert (one["dE_J"], one["J_kgm^2"]) == (turning.dE, turning.J)
     limits = ("--set", "limits.c_max=2.3 m/s", "--set", "limits.b_max=15 m/s2")
@@ -119,64 +119,64 @@ def test_key_values_of_other_commands_and_limits() -> None:
 
 
 def test_where_sort_top_and_pareto() -> None:
-    asked = ("--vary", "rod_ratio=3:6:0.5", "--columns", "c_max,b_max")
-    every = {one["row"]: one for one in rows(*asked)}
-    below = rows(*asked, "--where", "b_max < 13.5 m/s2")
+    words = ("--vary", "rod_ratio=3:6:0.5", "--columns", "c_max,b_max")
+    every = {one["row"]: one for one in rows(*words)}
+    below = rows(*words, "--where", "b_max < 13.5 m/s2")
     assert [one["row"] for one in below] == [
         row for row, one in every.items() if one["b_max_m/s^2"] < 13.5
     ]
-    assert [one["row"] for one in rows(*asked, "--where", "rod_ratio >= 5")] == [5, 6, 7]
-    assert [one["row"] for one in rows(*asked, "--sort", "c_max", "--top", "2")] == [7, 6]
-    assert [one["row"] for one in rows(*asked, "--sort", "-c_max", "--top", "1")] == [1]
+    assert [one["row"] for one in rows(*words, "--where", "rod_ratio >= 5")] == [5, 6, 7]
+    assert [one["row"] for one in rows(*words, "--sort", "c_max", "--top", "2")] == [7, 6]
+    assert [one["row"] for one in rows(*words, "--sort", "-c_max", "--top", "1")] == [1]
     # a longer rod betters both
-    assert [one["row"] for one in rows(*asked, "--pareto", "c_max,b_max")] == [7]
+    assert [one["row"] for one in rows(*words, "--pareto", "c_max,b_max")] == [7]
     # more of c_max against less of b_max: nothing betters anything
-    assert [one["row"] for one in rows(*asked, "--pareto", "-c_max,b_max")] == [1, 2, 3, 4, 5, 6, 7]
+    assert [one["row"] for one in rows(*words, "--pareto", "-c_max,b_max")] == [1, 2, 3, 4, 5, 6, 7]
 
 
-def test_a_key_value_is_asked_of_one_cylinder_as_it_is_called_in_the_head() -> None:
+def test_a_key_value_is_requested_of_one_cylinder_as_it_is_called_in_the_head() -> None:
     compressor = str(CONFIGS["compressor-two-stage"])
     column, vary = "low pressure.rod_tension_max", ("--vary", "speed=300,500 rpm")
     both = rows(*vary, "--columns", "rod_tension_max", file=compressor)
     alone = rows(
         *vary, "--columns", column, "--sort", column, "--where", f"{column} > 1 N", file=compressor
     )
-    told = [[row.get(f"{column}_N") for row in found] for found in (alone, both)]
-    assert told[0] == sorted(told[1])
+    reported = [[row.get(f"{column}_N") for row in result] for result in (alone, both)]
+    assert reported[0] == sorted(reported[1])
     assert not any("high pressure" in head for row in alone for head in row)
 
 
-def test_a_summary_tells_quantiles_and_ranks() -> None:
-    asked = ("--vary", "rod_ratio=uniform(3, 6)", "--sample", "60", "--columns", "b_max,work")
-    whole = rows(*asked)
-    told = {row["column"]: row for row in rows(*asked, "--summary")}
+def test_a_summary_reports_quantiles_and_ranks() -> None:
+    words = ("--vary", "rod_ratio=uniform(3, 6)", "--sample", "60", "--columns", "b_max,work")
+    whole = rows(*words)
+    reported = {row["column"]: row for row in rows(*words, "--summary")}
     values = np.array([one["b_max_m/s^2"] for one in whole])
-    assert told["b_max"]["q50"] == pytest.approx(np.median(values), rel=1e-13)
-    assert (told["b_max"]["q0"], told["b_max"]["q100"]) == (values.min(), values.max())
-    assert told["b_max"]["r(rod_ratio)"] == pytest.approx(-1)  # b_max = R ω² (1 + λ)
-    assert told["rod_ratio"]["rows"] == 60
+    assert reported["b_max"]["q50"] == pytest.approx(np.median(values), rel=1e-13)
+    assert (reported["b_max"]["q0"], reported["b_max"]["q100"]) == (values.min(), values.max())
+    assert reported["b_max"]["r(rod_ratio)"] == pytest.approx(-1)  # b_max = R ω² (1 + λ)
+    assert reported["rod_ratio"]["rows"] == 60
 
 
 def test_parts_one_after_another_are_the_whole_byte_for_byte() -> None:
     """Each row in the company that it has in the whole: numpy 1.24 rounds otherwise in arrays of another length."""
-    asked = ("--vary", "rod_ratio=3:6:0.2", "--columns", "T_max", "-f", "csv")
-    whole = run(*asked).stdout
-    assert "".join(run(*asked, "--shard", f"{k}/4").stdout for k in (1, 2, 3, 4)) == whole
+    words = ("--vary", "rod_ratio=3:6:0.2", "--columns", "T_max", "-f", "csv")
+    whole = run(*words).stdout
+    assert "".join(run(*words, "--shard", f"{k}/4").stdout for k in (1, 2, 3, 4)) == whole
     assert len(whole.splitlines()) == 17
 
 
 def test_resuming_ends_in_the_same_file(tmp_path: Path) -> None:
-    asked = ("--vary", "rod_ratio=3:6:0.3", "--columns", "c_max")
+    words = ("--vary", "rod_ratio=3:6:0.3", "--columns", "c_max")
     for suffix in ("csv", "json"):
         file = tmp_path / f"rows.{suffix}"
-        assert run(*asked, "-o", str(file)).exit_code == 0
+        assert run(*words, "-o", str(file)).exit_code == 0
         whole = file.read_bytes()
         for cut in (0, 200, len(whole) - 1):
             file.write_bytes(whole[:cut])
-            assert run(*asked, "-o", str(file), "--resume").exit_code == 0
+            assert run(*words, "-o", str(file), "--resume").exit_code == 0
             assert file.read_bytes() == whole
     file.write_text("something else\nquite\n")
-    refused = run(*asked, "-o", str(file), "--resume")
+    refused = run(*words, "-o", str(file), "--resume")
     assert "is not of this sweep" in refused.output
     assert refused.exit_code == 2
 
@@ -188,10 +188,10 @@ def part(file: Path) -> Path:
 
 def in_the_midst(file: Path, jobs: str) -> subprocess.Popen[str]:
     """Return a sweep that has written its first rows."""
-    asked = ["--vary", "rod_ratio=3:6:0.00002", "--columns", "T_max", "-o", str(file)]
+    words = ["--vary", "rod_ratio=3:6:0.00002", "--columns", "T_max", "-o", str(file)]
     # what runs in the background overlooks interrupts, and so do those that it starts
     process = subprocess.Popen(
-        [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *asked, "--jobs", jobs],
+        [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, *words, "--jobs", jobs],
         start_new_session=True,
         stderr=subprocess.PIPE,
         text=True,
@@ -250,12 +250,12 @@ def test_an_address_that_does_not_answer(address: str, monkeypatch: pytest.Monke
 
 
 def test_every_format_has_every_row(tmp_path: Path) -> None:
-    asked = ("--vary", "rod_ratio=0.5,5", "--columns", "T_max,phi_reversal")
-    assert run(*asked, "-f", "csv", "--decimal", "comma").stdout.splitlines()[0] == (
+    words = ("--vary", "rod_ratio=0.5,5", "--columns", "T_max,phi_reversal")
+    assert run(*words, "-f", "csv", "--decimal", "comma").stdout.splitlines()[0] == (
         "row;rod_ratio;T_max_N;phi_reversal_deg;failure"
     )
-    assert run(*asked, "-f", "markdown").stdout.count("\n") == 4
-    text = run(*asked).stdout.splitlines()
+    assert run(*words, "-f", "markdown").stdout.count("\n") == 4
+    text = run(*words).stdout.splitlines()
     assert text[-2].split() == ["2", "5.000", "87.70", "130.5", "316.1"]
     assert "too small" in text[-3]
 
@@ -265,7 +265,7 @@ def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
     """The type of a column was that of its first 10,000 rows; a sweep without a row left no file."""
     parquet = pytest.importorskip("pyarrow.parquet")
     file = str(tmp_path / "rows.parquet")
-    asked = (
+    words = (
         "--vary",
         "rod_ratio=0.2:1.3:0.00005",
         "--columns",
@@ -275,10 +275,10 @@ def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
         "--jobs",
         "1",
     )
-    assert run(*asked).exit_code == 0
+    assert run(*words).exit_code == 0
     strokes = parquet.read_table(file)["stroke_m"].to_pylist()
     assert (strokes.count(None), strokes[-1]) == (16001, pytest.approx(0.8))
-    assert run(*asked, "--where", "rod_ratio > 9").exit_code == 0
+    assert run(*words, "--where", "rod_ratio > 9").exit_code == 0
     assert parquet.read_table(file).num_rows == 0
 
 
@@ -291,7 +291,7 @@ def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
         ({}, "there is none"),
     ],
 )
-def test_python_is_told_what_is_wrong(inputs: dict[str, list[float]], message: str) -> None:
+def test_python_gets_what_is_wrong(inputs: dict[str, list[float]], message: str) -> None:
     with pytest.raises(kurbel.KurbelError, match=message):
         kurbel.sweep(kurbel.load(WATERWORKS), inputs, ["T_max"])
     machine = kurbel.Machine((kurbel.Cylinder(kurbel.SliderCrank(0.1, 0.5)),))

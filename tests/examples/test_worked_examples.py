@@ -12,8 +12,6 @@ from command import run
 from representative import few
 from worked_examples import ASKED, FILES, FOLDER, TABLE, expected, told
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 EXAMPLES = list(dict.fromkeys(row["file"] for row in ASKED))
 # what is asked, but for its numbers, and the first example that asks it
 KINDS = {re.sub(r"\d", "", row["ask"]): row["file"] for row in reversed(ASKED)}

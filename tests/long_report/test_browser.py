@@ -46,9 +46,9 @@ def measured(
     all_of_them = "".join(FRAME.replace("WIDTH", str(width)) for width in widths)
     frames.write_text(FRAMES.replace("ALL", all_of_them), encoding="utf-8")
     page_at_end, console = shown(frames, "--window-size=1400,1000", *flags)
-    found = re.search(r'<pre id="found">(.+?)</pre>', page_at_end, re.DOTALL)
-    assert found, console
-    return {load["width"]: load for load in json.loads(unescape(found.group(1)))}
+    result = re.search(r'<pre id="found">(.+?)</pre>', page_at_end, re.DOTALL)
+    assert result, console
+    return {load["width"]: load for load in json.loads(unescape(result.group(1)))}
 
 
 @browser
@@ -64,31 +64,31 @@ def test_the_console_stays_silent(names: tuple[str, ...], tmp_path: Path) -> Non
 @pytest.mark.parametrize("names", PAGES, ids=" and ".join)
 def test_nothing_overflows(names: tuple[str, ...], tmp_path: Path) -> None:
     """Nor has a reader to scroll from a key to its value."""
-    for width, found in measured(page_of(*names), (360, 500, 768, 1280), tmp_path).items():
-        assert (width, found["unseen"], found["beyond"]) == (width, [], [])
-        assert found["wide"] == width
+    for width, result in measured(page_of(*names), (360, 500, 768, 1280), tmp_path).items():
+        assert (width, result["unseen"], result["beyond"]) == (width, [], [])
+        assert result["wide"] == width
 
 
 @browser
 def test_no_picture_of_a_comparison_is_cut(tmp_path: Path) -> None:
     """Two stand side by side where both have room, or else one below the other; none has to be scrolled."""
-    found = measured(page_of("waterworks", "compressor"), (1280, 1100, 768, 520), tmp_path)
-    assert {width: one["across"] for width, one in found.items()} == {
+    result = measured(page_of("waterworks", "compressor"), (1280, 1100, 768, 520), tmp_path)
+    assert {width: one["across"] for width, one in result.items()} == {
         1280: 2,
         1100: 2,
         768: 1,
         520: 1,
     }
-    assert {one["cut"] for one in found.values()} == {0}
+    assert {one["cut"] for one in result.values()} == {0}
 
 
 @browser
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_contrast_as_it_is_shown(dark: bool, tmp_path: Path) -> None:
     flags = ("--blink-settings=preferredColorScheme=0",) if dark else ()
-    found = measured(page_of("gas-engine"), (1280,), tmp_path, *flags)[1280]
-    assert found["ground"] == ("rgb(21, 24, 27)" if dark else "rgb(255, 255, 255)")
-    assert found["least"] >= 4.5
+    result = measured(page_of("gas-engine"), (1280,), tmp_path, *flags)[1280]
+    assert result["ground"] == ("rgb(21, 24, 27)" if dark else "rgb(255, 255, 255)")
+    assert result["least"] >= 4.5
 
 
 @browser

@@ -72,7 +72,7 @@ def test_the_waterworks_machine_is_whole_and_small() -> None:
 
 
 @pytest.mark.parametrize("name", ["waterworks-two-cranks", "marine-diesel", "shaper"])
-def test_the_first_page_says_most(name: str) -> None:
+def test_the_first_page_shows_most(name: str) -> None:
     """The mechanism, eight key values as the commands print them, verdicts and warnings; input comes last."""
     page = page_of(name)
     sections = re.findall(r'<section id="([^"]*)"', page)
@@ -123,13 +123,13 @@ FIRST = {
 def test_the_key_values_are_those_of_its_kind(name: str) -> None:
     """None is zero, such as the power of an engine without gas, and none has an angle with digits of rounding."""
     page = page_of(name)
-    found = tiles(page)
-    assert set(FIRST[name]) <= {title for title, _ in found}
-    assert all(number_of(number.partition("·")[0]) for _, number in found)
+    result = tiles(page)
+    assert set(FIRST[name]) <= {title for title, _ in result}
+    assert all(number_of(number.partition("·")[0]) for _, number in result)
     assert not re.search(r"e-\d", section(page, "summary"))
 
 
-def test_what_a_machine_is_stands_below_its_name() -> None:
+def test_what_a_machine_is_is_below_its_name() -> None:
     """As configs/marine-diesel.yaml has it: L/R = 4.4, so that the rod has 1980 mm."""
     machine = "6 cylinders, two-stroke, 110 rpm, stroke 900 mm, rod 1980 mm, bore 540 mm"
     assert machine in text_in(page_of("marine-diesel"))
@@ -270,7 +270,7 @@ def test_limits_and_expectations_have_a_verdict() -> None:
     assert page.count('<tr class="good">') == 2
 
 
-def test_what_is_missing_is_said_and_why() -> None:
+def test_what_is_missing_is_reported_with_the_reason() -> None:
     page = text_in(page_of_case(Case(loads("{stroke: 800 mm, rod_ratio: 5}"))))
     assert "no force acts, so there is no torque" in page
     assert "no speed given" in page
@@ -281,7 +281,7 @@ def test_what_is_missing_is_said_and_why() -> None:
     assert "Largest velocity on the outstroke" in said  # what can be computed still is
 
 
-def test_the_input_is_told_as_it_was_read() -> None:
+def test_the_input_is_reported_as_it_was_read() -> None:
     machine = loads(
         "{stroke: 800 mm, rod_ratio: 5, bore: 1 in}",
         overrides=("bore=450 mm", "masses.piston=1 kg"),

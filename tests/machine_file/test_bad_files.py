@@ -21,9 +21,9 @@ def _message(name: str, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def test_messages(monkeypatch: pytest.MonkeyPatch, kept: Callable[[Path, str], str]) -> None:
-    told = {name: _message(name, monkeypatch) + "\n" for name in FILES}
-    assert told == {
-        name: kept(FOLDER / f"{name}.expected", message) for name, message in told.items()
+    reported = {name: _message(name, monkeypatch) + "\n" for name in FILES}
+    assert reported == {
+        name: kept(FOLDER / f"{name}.expected", message) for name, message in reported.items()
     }
 
 

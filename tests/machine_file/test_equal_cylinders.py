@@ -52,13 +52,13 @@ def test_banks_lean_in_the_sense_of_rotation() -> None:
     assert [cylinder.inclination for cylinder in loads(text).cylinders] == [135, -135]
 
 
-def test_a_firing_order_beside_a_list_needs_not_begin_with_1() -> None:
+def test_a_firing_order_with_a_list_needs_not_begin_with_1() -> None:
     rows = "\n".join("  - {stroke: 80 mm, rod_ratio: 4}" for _ in range(3))
     machine = loads(f"firing_order: 2-3-1\ncylinders:\n{rows}\n")
     assert [cylinder.crank_position for cylinder in machine.cylinders] == [0, 120, 240]
 
 
-def test_a_cylinder_is_like_another_but_for_what_stands_there() -> None:
+def test_a_cylinder_is_like_another_but_for_what_is_there() -> None:
     machine = loads(
         "cylinders:\n"
         "  - {name: HP, crank: 400 mm, rod: 2 m, bore: 450 mm, masses: {piston: 100 kg}}\n"
@@ -146,7 +146,7 @@ def test_intervals_end_where_the_first_fires_again() -> None:
     assert intervals([450.3, 90.1, 270.2], 720) == [180.1, 180.1, 359.8]
 
 
-def test_what_is_said_of_the_turn_holds() -> None:
+def test_what_is_written_of_the_turn_holds() -> None:
     """A crank position of a listed cylinder, a firing order, and positions that reach into the second turn."""
     row = "{stroke: 80 mm, rod_ratio: 4, bank_angle: 90 deg"
     for said, expected in (

@@ -74,7 +74,7 @@ def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
     assert load(path).name == "Tafel I"
 
 
-def test_rules_of_parts_are_told_although_another_part_is_wrong() -> None:
+def test_rules_of_parts_are_reported_although_another_part_is_wrong() -> None:
     with pytest.raises(MachineFileError) as caught:
         loads("crank: 400 mm\nrod: 300 mm\nbore: 90 mm\nhead_end_rod: 95 mm\nflywheel: {}\n")
     assert [fault.path for fault in caught.value.faults] == [
@@ -122,11 +122,11 @@ def test_what_is_like_the_changed_one_changes_with_it() -> None:
             for cylinder in loads(ALL["like_one"], "m", [f"{key}=150 mm"]).cylinders
         ] == [0.15, 0.15]
     changed = ["cylinders.count=2", "cylinders.firing_order=1-2", "cylinders.each.bore=1 m"]
-    found = [
+    results = [
         (cylinder.pistons[0].bore, cylinder.crank_position)
         for cylinder in loads(ALL["equal_cylinders"], "m", changed).cylinders
     ]
-    assert found == [(1, 0), (1, 360)]
+    assert results == [(1, 0), (1, 360)]
 
 
 @pytest.mark.parametrize(

@@ -109,16 +109,16 @@ def test_figures_may_be_named_by_their_symbols(validator: Any) -> None:
 
 def all_records() -> Iterator[RecordForm]:
     """Every record that the keys of a machine lead to."""
-    found = {ROOT.record: ROOT}
+    results = {ROOT.record: ROOT}
     waiting = [ROOT]
     while waiting:
         record = waiting.pop()
         for name, key in record.keys.items():
             for _, inner in records(key.form, name):
-                if inner.record not in found:
-                    found[inner.record] = inner
+                if inner.record not in results:
+                    results[inner.record] = inner
                     waiting.append(inner)
-    return iter(found.values())
+    return iter(results.values())
 
 
 def declared(field: str) -> list[Any]:
@@ -152,7 +152,7 @@ def test_two_keys_that_say_the_same_thing_are_a_contradiction(
 
 
 @law_of_each(declared("needs"))
-def test_a_key_needs_the_one_beside_it(record: RecordForm, name: str, key: Key) -> None:
+def test_a_key_needs_the_one_that_goes_with_it(record: RecordForm, name: str, key: Key) -> None:
     with pytest.raises(RuleError, match=f"{name}: '{name}' needs '{key.needs}' beside it"):
         record.record.from_keys(**{name: 1.5})
     assert not allowed_by_schema(record, name)

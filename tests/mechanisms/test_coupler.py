@@ -81,10 +81,10 @@ def expected(
 def test_the_rod_and_a_point_of_it(name: str) -> None:
     text, offset = SLIDERS[name]
     s = cylinder(text + POINT).at(ANGLES)
-    found = np.array(
+    result = np.array(
         [s.x_point, s.y_point, s.v_point, s.b_point, -s.psi, -s["psi_dot"], -s["psi_ddot"]]
     ).T
-    for row, degrees in zip(found, ANGLES):
+    for row, degrees in zip(result, ANGLES):
         along, across = mp.mpf("0.5"), mp.mpf("0.12")
         assert row == pytest.approx(
             expected(crosshead_of(offset), "0.3", along, across, degrees), rel=1e-12, abs=1e-12
@@ -94,8 +94,8 @@ def test_the_rod_and_a_point_of_it(name: str) -> None:
 def test_the_coupler_of_the_four_bar_and_a_point_of_it() -> None:
     s = cylinder(FOUR_BAR + "point: {from: rocker_pin, along: 50 mm, across: -80 mm}\n").at(ANGLES)
     turn = [s["theta_coupler"], s["theta_coupler_dot"], s["theta_coupler_ddot"]]
-    found = np.array([s.x_point, s.y_point, s.v_point, s.b_point, *turn]).T
-    for row, degrees in zip(found, ANGLES):
+    result = np.array([s.x_point, s.y_point, s.v_point, s.b_point, *turn]).T
+    for row, degrees in zip(result, ANGLES):
         along, across = mp.mpf("0.25"), mp.mpf("-0.08")
         assert row == pytest.approx(
             expected(rocker_joint, "0.1", along, across, degrees), rel=1e-12, abs=1e-12

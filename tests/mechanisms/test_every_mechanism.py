@@ -195,12 +195,12 @@ def test_forces_and_speeds_are_those_of_the_free_body(machine):
     expected = FREE_BODIES[type(machine)](machine, np.exp(1j * np.radians(degrees)), load_)
     per_angle = {"c_block": 1, "theta_dot": 1, "bx_coupler": 2, "by_coupler": 2}
     for id, values in expected.items():
-        found = state[id] / (3 * math.pi) ** per_angle.get(id, 0)
+        result = state[id] / (3 * math.pi) ** per_angle.get(id, 0)
         if id == "x":
-            found, values = found - found[0], values - values[0]
+            result, values = result - result[0], values - values[0]
         if id == "theta":
-            found = np.remainder(found - values + 180, 360) + values - 180
-        assert found == pytest.approx(values, rel=1e-10, abs=1e-10 * abs(values).max()), id
+            result = np.remainder(result - values + 180, 360) + values - 180
+        assert result == pytest.approx(values, rel=1e-10, abs=1e-10 * abs(values).max()), id
 
 
 @every()
@@ -260,7 +260,7 @@ POWERS_OF_A_MOMENT = {**POWERS, "N": -1, "N m": 0, "J": 0, "W": 0}
 
 
 @law_of_each((machine, word) for machine in MACHINES.values() for word in ("motion", "forces"))
-def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, command):
+def test_every_answer_grows_with_the_lengths_as_its_unit_demands(machine, command):
     """Twice as large: the same angles and forces, twice the lengths and moments, a quarter of the pressure."""
     frame = Frame(command, (0.0, 33.0, 118.0, 291.0), None, "si")
     parts = [report_of(loaded(one), frame).parts[0] for one in (machine, resized(machine, 2.0))]

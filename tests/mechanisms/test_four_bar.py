@@ -52,9 +52,9 @@ def test_drag_link_in_a_machine_file():
     keys = "crank: 300 mm\ncoupler: 250 mm\nrocker: 300 mm\nframe: 100 mm"
     case = Case(loads(f"speed: 60 rpm\nmechanism: four-bar\n{keys}\nmoment: {{work: 900 Nm}}"))
     report = report_of(case, Frame("motion", (0.0, 90.0), None, "si"))
-    told = {key_value.id for key_value in report.parts[0].key_values}
-    assert {"theta_dot_max", "transmission_min"} <= told
-    assert not {"phi_idc", "phi_odc", "swing", "theta_max", "time_ratio", "c_work_max"} & told
+    reported = {key_value.id for key_value in report.parts[0].key_values}
+    assert {"theta_dot_max", "transmission_min"} <= reported
+    assert not {"phi_idc", "phi_odc", "swing", "theta_max", "time_ratio", "c_work_max"} & reported
     assert any("drag link" in note for note in report.notes)
     assert case.cylinders[0].drive.resistance_work == pytest.approx(-900 * math.tau, rel=1e-15)
     # mean of θ̇ over a turn is ω: both shafts make one turn in a second

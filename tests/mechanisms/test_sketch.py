@@ -35,7 +35,7 @@ def whole(mechanism: Mechanism) -> Sketch:
 
 
 @law_of_each(DRAWN)
-def test_the_crank_is_where_the_crank_angle_says(name: str) -> None:
+def test_the_crank_is_where_the_crank_angle_is(name: str) -> None:
     joints = sketch_of(DRAWN[name])
     turn = np.exp(1j * np.radians(DEGREES))
     assert np.allclose(joints[PIN], DRAWN[name].crank * turn, rtol=0, atol=1e-14)

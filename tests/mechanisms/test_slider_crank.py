@@ -30,18 +30,18 @@ def test_largest_velocity(lam):
             exact * mp.sqrt(q / exact**2) * (1 + q),
             mp.degrees(mp.asin(mp.sqrt(q / exact**2))),
         )
-    found = motion_of(lam)
-    assert found.c_max.value == pytest.approx(float(wanted), rel=1e-13)
-    assert found.c_max.degrees == pytest.approx(float(at), abs=1e-9)
-    assert found.c_min.value == pytest.approx(-found.c_max.value, rel=1e-13)
+    result = motion_of(lam)
+    assert result.c_max.value == pytest.approx(float(wanted), rel=1e-13)
+    assert result.c_max.degrees == pytest.approx(float(at), abs=1e-9)
+    assert result.c_min.value == pytest.approx(-result.c_max.value, rel=1e-13)
 
 
 @pytest.mark.parametrize("lam", [0.2, 0.25, 0.2638, 0.3, 0.5, 0.7, 0.881, 0.99])
 def test_smallest_acceleration(lam):
     """Beyond λ = (√21 − 3)/6 = 0.263763 within the stroke, where 3y(1 − y)(1 + y)² = ρ for y = −λ cos φ/cos ψ."""
-    exact, found = mp.mpf(lam), motion_of(lam).b_min
+    exact, result = mp.mpf(lam), motion_of(lam).b_min
     if lam < (math.sqrt(21) - 3) / 6:
-        assert (found.value, found.degrees) == (pytest.approx(lam * (lam - 1), rel=1e-13), 180.0)
+        assert (result.value, result.degrees) == (pytest.approx(lam * (lam - 1), rel=1e-13), 180.0)
         return
     rho = 1 - exact**2
     y = mp.findroot(
@@ -50,7 +50,7 @@ def test_smallest_acceleration(lam):
     kappa = mp.sqrt(rho / (1 - y**2))
     cos = -y * kappa / exact
     wanted = exact * (cos * (kappa + exact * cos) / kappa - exact * rho * (1 - cos**2) / kappa**3)
-    assert found.value == pytest.approx(float(wanted), rel=1e-12)
+    assert result.value == pytest.approx(float(wanted), rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -64,7 +64,7 @@ def test_the_stroke_gives_the_crank(offset, by_ratio):
 
 
 @pytest.mark.parametrize("offset", [0.05, -0.3])
-def test_displacement_keeps_its_digits_beside_the_inner_dead_centre(offset: float) -> None:
+def test_displacement_keeps_its_digits_near_the_inner_dead_centre(offset: float) -> None:
     """A thousandth of a degree away it is 1e-10 of the crank, of which small clearances need every digit."""
     mechanism, degrees = (
         SliderCrank(0.4, 2.0, offset),

@@ -25,21 +25,21 @@ def test_angles_and_times_need_no_lever(crank, frame, ratio, swing):
         loads(f"speed: 60 rpm\nmechanism: slotted-lever\ncrank: {crank} mm\nframe: {frame} mm")
     )
     report = report_of(case, Frame("motion", (0.0, 90.0), None, "si"))
-    told = {key_value.id: key_value.value for key_value in report.parts[0].key_values}
+    reported = {key_value.id: key_value.value for key_value in report.parts[0].key_values}
     # the book rounds the angle of the return stroke to 96.4°
-    assert told["time_ratio"] == pytest.approx(ratio, abs=2e-3)
+    assert reported["time_ratio"] == pytest.approx(ratio, abs=2e-3)
     half = math.degrees(math.acos(min(crank, frame) / max(crank, frame)))
-    assert told["phi_return"] == pytest.approx(2 * half, rel=1e-14)
-    assert told.get("swing") == (swing and pytest.approx(swing, rel=1e-14))
-    assert not {"stroke", "c_m", "c_work_max", "b_max"} & set(told)
+    assert reported["phi_return"] == pytest.approx(2 * half, rel=1e-14)
+    assert reported.get("swing") == (swing and pytest.approx(swing, rel=1e-14))
+    assert not {"stroke", "c_m", "c_work_max", "b_max"} & set(reported)
     assert not {"x", "c", "b"} & {column.id for column in report.parts[0].columns}
     assert any("Whitworth" in note for note in report.notes) == (swing is None)
 
 
-def test_a_slot_that_ends_before_the_pin_does_is_told() -> None:
+def test_a_slot_that_ends_before_the_pin_does_is_reported() -> None:
     """The pin is MD + r from the pivot at the farthest: 240 + 120 = 360 mm."""
-    (told,) = SlottedLever(0.12, 0.24, 0.3).notes
-    assert told.startswith(
+    (reported,) = SlottedLever(0.12, 0.24, 0.3).notes
+    assert reported.startswith(
         "The pin slides as far as 360 mm from the lever's pivot, past its end at 300 mm"
     )
     assert SlottedLever(0.12, 0.24, 0.36).notes == ()

@@ -34,14 +34,14 @@ def pictures_on(page: Path) -> list[str]:
 
 
 def words_in(svg: str) -> list[str]:
-    found = (
+    results = (
         one for one in ElementTree.fromstring(svg).iter() if one.tag.endswith(("text", "title"))
     )
-    return ["".join(one.itertext()) for one in found]
+    return ["".join(result.itertext()) for result in results]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", gallery.every_file())
-def test_every_file_says_what_is_drawn_now(name: str, kept: Callable[[Path, str], str]) -> None:
+def test_every_file_shows_what_is_drawn_now(name: str, kept: Callable[[Path, str], str]) -> None:
     drawn = gallery.svg_of(*gallery.every_file()[name])
     assert words_in(kept(DOCS / name, drawn)) == words_in(drawn)

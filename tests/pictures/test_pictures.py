@@ -339,6 +339,6 @@ def test_a_diagram_that_would_be_a_line_or_empty_is_left_out() -> None:
     assert "orders" in ids_of("shaper")
 
 
-def test_a_degree_stands_next_to_its_number() -> None:
+def test_a_degree_is_next_to_its_number() -> None:
     text = picture_text(drawn("shaper", "motion")[0], Look())
     assert "θ_max 22.02°, 112.02°" in text

@@ -11,7 +11,7 @@ from representative import CONFIGS, few
 WATERWORKS = str(CONFIGS["waterworks"])
 
 
-def test_without_a_name_the_picture_that_says_most() -> None:
+def test_without_a_name_the_picture_that_shows_most() -> None:
     result = run("plot", WATERWORKS)
     assert result.exit_code == 0
     assert result.stdout.startswith("Waterworks engine, high-pressure side. Piston force\n")
@@ -64,7 +64,7 @@ def test_without_typst_the_way_out_is_named(
     result = run("plot", WATERWORKS, "card", "-o", str(tmp_path / "x.pdf"))
     assert result.exit_code == 2
     assert (
-        "a pdf needs typst, which is not installed: pip install 'kurbel[plot]'; svg needs no package"
+        "a pdf needs typst, which is not installed: pip install typst; svg needs no package"
         in result.stderr
     )
     assert run("plot", WATERWORKS, "card", "-o", str(tmp_path / "x.svg")).exit_code == 0

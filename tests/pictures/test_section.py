@@ -39,11 +39,11 @@ def placed(body: Body, point: complex, moment: int = 0) -> complex:
 
 def rods(panel: Panel) -> list[tuple[Body, complex]]:
     """The connecting rods, from the crank pin, each with the place of the other pin: a round eye at its far end."""
-    found = []
+    results = []
     for body in panel.bodies:
         eyes = [shape.points[0] for shape in body.shapes if shape.look == "rod" and shape.radius]
-        found += [(body, eye) for eye in eyes if eye.real > 0]
-    return found
+        results += [(body, eye) for eye in eyes if eye.real > 0]
+    return results
 
 
 ANGLES = (0.0, 37.0, 90.0, 180.0, 251.5)
@@ -100,7 +100,7 @@ def test_a_throw_from_the_side_is_as_high_as_its_cosine() -> None:
     assert np.allclose(heights, 0.45 * np.cos(np.radians(25.0 - lags)), atol=1e-12)
 
 
-def test_four_bars_are_as_long_as_the_file_says() -> None:
+def test_four_bars_are_as_long_as_the_file_gives() -> None:
     for degrees in ANGLES:
         panel = panel_of(case_of("crank-rocker"), degrees)
         bars = [body for body in panel.bodies if body.shapes[0].look == "rod"]
@@ -187,7 +187,7 @@ def test_a_picture_at_one_angle_is_tinted_like_the_moving_one() -> None:
 
 def texts_in(root: ElementTree.Element, at: complex = 0j) -> list[tuple[complex, float, str]]:
     """The place, half the width, and the words of each text; nothing but translations is above texts."""
-    found = []
+    results = []
     for one in root:
         moved = at
         if match := re.fullmatch(r"translate\(([-\d.]+) ([-\d.]+)\)", one.get("transform", "")):
@@ -199,9 +199,9 @@ def texts_in(root: ElementTree.Element, at: complex = 0j) -> list[tuple[complex,
                 6.6 * len(words),
             )
             shift = {"middle": 0.0, "end": -wide / 2}.get(one.get("text-anchor", ""), wide / 2)
-            found.append((place + shift, wide / 2, words))
-        found += texts_in(one, moved)
-    return found
+            results.append((place + shift, wide / 2, words))
+        results += texts_in(one, moved)
+    return results
 
 
 @pytest.mark.parametrize("name", few(DRAWN, SOME))
@@ -290,6 +290,4 @@ def test_without_typst_a_poster_names_the_way_out(
     monkeypatch.setattr(importlib.util, "find_spec", lambda name, *more: None)
     result = run("plot", CONFIGS["waterworks"], "--poster", "A2", "-o", str(tmp_path / "x.svg"))
     assert result.exit_code == 2
-    assert (
-        "a poster needs typst, which is not installed: pip install 'kurbel[plot]'" in result.stderr
-    )
+    assert "a poster needs typst, which is not installed: pip install typst" in result.stderr

@@ -10,7 +10,6 @@ from command import run
 from kurbel.report.commands import REPORTS
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
 BROKEN = """\
 name: Engine with five mistakes
 speed: 50
@@ -69,9 +68,9 @@ def test_an_answer_keeps_the_schema(asked: list[str], validator: Draft7Validator
 
 def test_a_check_of_a_file_with_faults_keeps_it(validator: Draft7Validator) -> None:
     ran = run("check", "-", "-f", "json", text=BROKEN)
-    found = json.loads(ran.stdout)
-    assert (ran.exit_code, found["machine"], len(found["findings"]) >= 5) == (2, None, True)
-    validator.validate(found)
+    result = json.loads(ran.stdout)
+    assert (ran.exit_code, result["machine"], len(result["findings"]) >= 5) == (2, None, True)
+    validator.validate(result)
 
 
 def test_a_wrong_answer_does_not(validator: Draft7Validator) -> None:

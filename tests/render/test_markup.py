@@ -16,8 +16,6 @@ from kurbel.tables.tables import KeyValue, LeftOut, Part, PlaceTable, Report
 from render.sample_report import ONE, PHI
 from representative import CONFIGS
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 
 @pytest.mark.parametrize(
     ("plain", "typeset"),

@@ -63,7 +63,7 @@ def test_rows_as_an_engineer_writes_them(row: list[float | None], cells: list[st
         (36, ("36", 0)),
     ],
 )
-def test_a_value_that_stands_alone(value: float, shown: tuple[str, int]) -> None:
+def test_a_value_that_is_alone(value: float, shown: tuple[str, int]) -> None:
     assert single(value) == shown
 
 

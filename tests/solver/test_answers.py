@@ -11,8 +11,6 @@ from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 COMPRESSOR = """
 speed: 600 rpm
 crank: 50 mm
@@ -33,7 +31,7 @@ def cylinder(text: str) -> CylinderForces:
 class TestPeaks:
     forces = cylinder(COMPRESSOR)
 
-    def test_the_largest_pressure_stands_at_either_end(self) -> None:
+    def test_the_largest_pressure_is_at_either_end(self) -> None:
         """9 bar at the crank end, on the return stroke of the head end; 7 bar at the other one."""
         assert self.forces.p_max.value == pytest.approx(9e5, rel=1e-15)
         assert self.forces.p_max.degrees <= 180.0
@@ -94,7 +92,7 @@ class TestOverTheStroke:
 
 
 class TestCompare:
-    def test_the_books_approximations_beside_the_exact_columns(self) -> None:
+    def test_the_books_approximations_next_to_the_exact_columns(self) -> None:
         """R 286, B 25, R 291 at 60° for λ = 1/5: x = 0.575 R, c = 0.9526 v, b = 0.4 v²/R."""
         found = json_of("motion", "--compare", "--angles", "60")
         R, v = 0.4, 0.4 * 2 * np.pi

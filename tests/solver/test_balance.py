@@ -80,8 +80,8 @@ def test_forces_and_moments_against_forty_digits(ratio: float, offset: float) ->
         f"bank_angle: {bank} deg, crank_position: {late} deg, axial_position: {z} m}}"
         for bank, late, z in lines
     ]
-    found = balance_of(f"{{speed: 600 rpm, cylinders: [{', '.join(cylinders)}]}}")
-    columns = found.at(ANGLES)
+    result = balance_of(f"{{speed: 600 rpm, cylinders: [{', '.join(cylinders)}]}}")
+    columns = result.at(ANGLES)
     with mp.workdps(40):
         lam = 1 / mp.mpf(ratio)
         each = [
@@ -138,7 +138,7 @@ cylinders:
 )
 def test_bearing_guide_and_gas_make_up_the_free_force_and_the_rolling_moment(rod: str) -> None:
     case = Case(loads(INSIDE.replace("ROD", rod)))
-    (forces,), found = case.cylinders, case.balance.at(ANGLES)
+    (forces,), result = case.cylinders, case.balance.at(ANGLES)
     inside = forces.at(ANGLES)
     throw = np.exp(1j * np.radians(ANGLES))
     drive = forces.drive
@@ -146,14 +146,14 @@ def test_bearing_guide_and_gas_make_up_the_free_force_and_the_rolling_moment(rod
     bearing = (-inside.D + 1j * inside.T) * throw + rotating * 0.05 * OMEGA**2 * throw
     force = bearing - 1j * inside.N + inside.P_gas
     assert_allclose(
-        found.F_x + 1j * found.F_y, force, rtol=0, atol=1e-13 * np.abs(inside.P_gas).max()
+        result.F_x + 1j * result.F_y, force, rtol=0, atol=1e-13 * np.abs(inside.P_gas).max()
     )
     # N presses on the guide where the crosshead is, the gas on the cover beside the axis of the shaft
     far = 0.05 * np.cos(np.radians(ANGLES)) + np.sqrt(
         0.17**2 - (0.05 * np.sin(np.radians(ANGLES)) - 0.012) ** 2
     )
     roll = -inside.N * far - 0.012 * inside.P_gas
-    assert_allclose(found.M_roll, roll, rtol=0, atol=1e-12 * np.abs(roll).max())
+    assert_allclose(result.M_roll, roll, rtol=0, atol=1e-12 * np.abs(roll).max())
     assert case.balance.M_roll_max.value >= roll.max()
 
 
@@ -193,13 +193,13 @@ def test_forces_by_symmetry(banks: tuple[int, ...], late: tuple[int, ...]) -> No
 
 def test_ninety_degrees_with_a_counterweight_of_one_mass() -> None:
     """First order 0; of second order √2 A₂ m R ω² is left across the middle of the V."""
-    found = balance_of(V90, "counterweights=[{product: 0.1 kg m}]")
-    force = found.free.force
+    result = balance_of(V90, "counterweights=[{product: 0.1 kg m}]")
+    force = result.free.force
     assert (force.of(1)[0], force.of(-1)[0]) == (0, 0)
     assert abs(force.of(2)[0]) + abs(force.of(-2)[0]) == pytest.approx(
         math.sqrt(2) * 0.1 * 0.254025042307, rel=1e-11
     )
-    assert found.F_free_max.value == pytest.approx(found.F_free_best.value, rel=1e-13)
+    assert result.F_free_max.value == pytest.approx(result.F_free_best.value, rel=1e-13)
 
 
 # counterweights
@@ -207,7 +207,7 @@ def test_ninety_degrees_with_a_counterweight_of_one_mass() -> None:
 
 def test_the_best_share_of_one_cylinder() -> None:
     """λ = ¼: what the dead centre leaves, 1 + λ − c, is as large as the largest beside 100°, by thirty digits."""
-    found = balance_of(single())
+    result = balance_of(single())
     unit = 0.1 * OMEGA**2
 
     def beside(c: Any) -> Any:
@@ -221,9 +221,9 @@ def test_the_best_share_of_one_cylinder() -> None:
         share = mp.findroot(
             lambda c: beside(c) - (mp.mpf("1.25") - c), (0.589, 0.591), solver="secant"
         )
-    assert found.share_best == pytest.approx(float(share), abs=1e-12)
-    assert found.F_free_best.value / unit == pytest.approx(1.25 - float(share), abs=1e-12)
-    assert (found.counterweight_least, found.counterweight_least_angle) == pytest.approx(
+    assert result.share_best == pytest.approx(float(share), abs=1e-12)
+    assert result.F_free_best.value / unit == pytest.approx(1.25 - float(share), abs=1e-12)
+    assert (result.counterweight_least, result.counterweight_least_angle) == pytest.approx(
         (0.1 * float(share), 180.0)
     )
 
@@ -283,37 +283,37 @@ def test_no_counterweight_has_no_direction() -> None:
     opposite = V90.replace("bank_angle: 90", "bank_angle: -45").replace(
         "position: 90", "position: 180"
     )
-    found = balance_of(opposite.replace("rod_ratio: 4", "rod_ratio: 1.55"))
-    assert (found.counterweight_least, found.counterweight_least_angle) == (0, None)
+    result = balance_of(opposite.replace("rod_ratio: 4", "rod_ratio: 1.55"))
+    assert (result.counterweight_least, result.counterweight_least_angle) == (0, None)
 
 
 @pytest.mark.parametrize(("share", "left"), [("0", 1.25), ("0.5", 0.75), ("2/3", 0.722784)])
 def test_what_a_share_leaves(share: str, left: float) -> None:
-    found = balance_of(single(4, f", counterweights: {{share: {share}}}"))
-    assert found.F_free_max.value / (0.1 * OMEGA**2) == pytest.approx(left, abs=5e-6)
-    assert found.counterweight_given == pytest.approx(0.1 * eval(share))
+    result = balance_of(single(4, f", counterweights: {{share: {share}}}"))
+    assert result.F_free_max.value / (0.1 * OMEGA**2) == pytest.approx(left, abs=5e-6)
+    assert result.counterweight_given == pytest.approx(0.1 * eval(share))
 
 
 def test_weights_in_two_planes_take_away_all_that_turns_with_the_crank() -> None:
-    found = balance_of(TWO_CRANKS)
+    result = balance_of(TWO_CRANKS)
     weights = ", ".join(
         f"{{product: {abs(best_in_plane.product)!r} kg m, angle: {math.degrees(np.angle(best_in_plane.product))!r} deg, "
         f"axial_position: {best_in_plane.place} m}}"
-        for best_in_plane in found.best_in_planes
+        for best_in_plane in result.best_in_planes
     )
     free = balance_of(TWO_CRANKS, f"counterweights=[{weights}]").free
-    assert abs(free.force.of(1)[0]) < 1e-12 * abs(found.bare.force.of(1)[0])
-    assert abs(free.moment.of(1)[0]) < 1e-12 * abs(found.bare.moment.of(1)[0])
+    assert abs(free.force.of(1)[0]) < 1e-12 * abs(result.bare.force.of(1)[0])
+    assert abs(free.moment.of(1)[0]) < 1e-12 * abs(result.bare.moment.of(1)[0])
 
 
 def test_lanchester_shafts() -> None:
     """Four in line: two shafts at twice the speed in the middle, one each way, leave order 4."""
-    found = balance_of(FOUR)
-    assert [(best_shaft.order, best_shaft.place) for best_shaft in found.best_shafts] == [
+    result = balance_of(FOUR)
+    assert [(best_shaft.order, best_shaft.place) for best_shaft in result.best_shafts] == [
         (2, pytest.approx(0.15)),
         (-2, pytest.approx(0.15)),
     ]
-    product = abs(found.best_shafts[0].product)
+    product = abs(result.best_shafts[0].product)
     assert product == pytest.approx(4 * 0.1 * 0.254025042307 / 2 / 4, rel=1e-11)
     shafts = ", ".join(
         f"{{order: 2, sense: {sense}, product: {product!r} kg m, axial_position: 150 mm}}"
@@ -348,8 +348,8 @@ def test_half_a_counterweight_and_a_shaft_against_the_crank_leave_no_first_order
     None
 ):
     """m R cos φ is ½ m R with the crank and ½ m R against it: each is taken away by a weight that turns as it does."""
-    found = balance_of(single())
-    (shaft,) = (best_shaft for best_shaft in found.best_shafts if best_shaft.order == -1)
+    result = balance_of(single())
+    (shaft,) = (best_shaft for best_shaft in result.best_shafts if best_shaft.order == -1)
     assert (abs(shaft.product), shaft.product.real < 0) == (pytest.approx(0.5 * 2 * 0.05), True)
     left = first_order_left(single(), ["{product: 0.05 kg m}"], [written(shaft, AGAINST)])
     assert left == pytest.approx([0, 0], abs=1e-16)
@@ -364,13 +364,13 @@ def test_a_shaft_with_a_couple_takes_away_the_first_order_moment_of_odd_engines(
     text: str, behind: list[int]
 ) -> None:
     """Each cylinder has ½ m R with its crank and ½ m R against it, whose moments about the middle are added up."""
-    found, half = balance_of(text), 0.5 * 2 * 0.05
+    result, half = balance_of(text), 0.5 * 2 * 0.05
     span = 0.1 * (len(behind) - 1)
     places = [0.1 * k - span / 2 for k in range(len(behind))]
     couple = half * abs(
         sum(z * np.exp(1j * math.radians(angle)) for z, angle in zip(places, behind))
     )
-    shaft = [best_shaft for best_shaft in found.best_shafts if best_shaft.order == -1]
+    shaft = [best_shaft for best_shaft in result.best_shafts if best_shaft.order == -1]
     assert [one.place for one in shaft] == pytest.approx([0, span])
     assert [abs(one.product) for one in shaft] == pytest.approx([couple / span] * 2, rel=1e-12)
     assert abs(sum(one.product for one in shaft)) < 1e-14
@@ -378,41 +378,41 @@ def test_a_shaft_with_a_couple_takes_away_the_first_order_moment_of_odd_engines(
         assert couple / span == pytest.approx(math.sqrt(3) / 4 * 2 * 0.05)
 
     left = first_order_left(
-        text, [*map(written, found.best_in_planes)], [written(one, AGAINST) for one in shaft]
+        text, [*map(written, result.best_in_planes)], [written(one, AGAINST) for one in shaft]
     )
     assert left == pytest.approx([0] * 4, abs=1e-12 * couple)
 
 
 def test_a_locomotive() -> None:
     """Infinite rod: √2 (1 − c) m R ω² and (1 − c) m R ω² a/√2 of the books, and the blow as by a lever."""
-    found = balance_of(
+    result = balance_of(
         TWO_CRANKS.replace("rod_ratio: 6", "rod: infinite"),
         "counterweights={share: 0.6}",
         "locomotive={wheel_distance: 1.6 m, wheel_diameter: 1.7 m, wheel_load: 80 kN, hammer_limit: 40 kN}",
     )
     unit = 300 * 0.3 * OMEGA**2
-    assert found.traction_variation.value == pytest.approx(math.sqrt(2) * 0.4 * unit)
-    assert found.swaying_couple.value == pytest.approx(0.4 * unit * 0.7 / math.sqrt(2))
+    assert result.traction_variation.value == pytest.approx(math.sqrt(2) * 0.4 * unit)
+    assert result.swaying_couple.value == pytest.approx(0.4 * unit * 0.7 / math.sqrt(2))
     blow = math.hypot(1.6 + 0.7, 1.6 - 0.7) / (2 * 1.6) * unit
-    assert found.hammer_blow == pytest.approx(0.6 * blow)
-    assert found.share_allowed == pytest.approx(40e3 / blow)
-    assert found.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / (0.6 * blow)))
-    assert found.hammer_train_speed == pytest.approx(found.hammer_speed * math.pi * 1.7)
-    assert found.train_speed == pytest.approx(10 * math.pi * 1.7)
+    assert result.hammer_blow == pytest.approx(0.6 * blow)
+    assert result.share_allowed == pytest.approx(40e3 / blow)
+    assert result.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / (0.6 * blow)))
+    assert result.hammer_train_speed == pytest.approx(result.hammer_speed * math.pi * 1.7)
+    assert result.train_speed == pytest.approx(10 * math.pi * 1.7)
 
 
 def test_the_whole_counterweight_in_each_wheel() -> None:
     """Khurmi & Gupta, Theory of Machines, 22.1: 105 kg at 0.6 m in each wheel, 20° from opposite the crank."""
-    found = balance_of(
+    result = balance_of(
         "{speed: 300 rpm, cylinders: [{name: B, crank: 300 mm, rod: infinite, axial_position: -350 mm, masses: "
         "{reciprocating: 180 kg, rotating: 150 kg}}, {like: B, axial_position: 350 mm, crank_position: 90 deg}]}",
         "counterweights={share: 2/3}",
         "locomotive={wheel_distance: 1.5 m}",
     )
-    weights = np.array(found.in_wheels("counterweights"))
+    weights = np.array(result.in_wheels("counterweights"))
     product = 270 * 0.3 * math.hypot(1.1, 0.4) / 1.5
     assert_allclose(np.abs(weights), product)
-    assert found.counterweight_wheel == pytest.approx(product)
+    assert result.counterweight_wheel == pytest.approx(product)
     assert round(product / 0.6) == 105
     aside = math.degrees(math.atan(0.4 / 1.1))  # crank B leads here, in the book it follows
     assert_allclose(sorted(np.degrees(np.angle(weights)) % 360), [90 + aside, 180 - aside])
@@ -421,20 +421,20 @@ def test_the_whole_counterweight_in_each_wheel() -> None:
 @pytest.mark.parametrize("place", [300, -300])
 def test_the_larger_counterweight_of_both_wheels_is_the_one_shown(place: int) -> None:
     """By the lever: of 10 kg m at 300 mm from the middle the nearer of two wheels 1.5 m apart carries 7 kg m."""
-    found = balance_of(
+    result = balance_of(
         "{speed: 300 rpm, cylinders: [{name: B, crank: 300 mm, rod: infinite, axial_position: -350 mm, masses: "
         "{reciprocating: 180 kg}}, {like: B, axial_position: 350 mm, crank_position: 90 deg}]}",
         f"counterweights=[{{product: 10 kg m, angle: 180 deg, axial_position: {place} mm}}]",
         "locomotive={wheel_distance: 1.5 m}",
     )
-    assert found.counterweight_wheel == pytest.approx(7.0, rel=1e-12)
+    assert result.counterweight_wheel == pytest.approx(7.0, rel=1e-12)
 
 
-def test_the_book_beside_the_exact() -> None:
-    found = balance_of(FOUR)
-    assert longest(found.book.force)[0] == pytest.approx(4 * 0.1 * 0.25, rel=1e-14)
+def test_the_book_next_to_the_exact() -> None:
+    result = balance_of(FOUR)
+    assert longest(result.book.force)[0] == pytest.approx(4 * 0.1 * 0.25, rel=1e-14)
     assert_allclose(
-        found.at(ANGLES).F_x_book, 0.1 * OMEGA**2 * np.cos(np.radians(2 * ANGLES)), atol=1e-10
+        result.at(ANGLES).F_x_book, 0.1 * OMEGA**2 * np.cos(np.radians(2 * ANGLES)), atol=1e-10
     )
     assert balance_of(single(4, ", offset: 10 mm")).book is None
     yoke = balance_of(

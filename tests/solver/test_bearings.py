@@ -63,8 +63,8 @@ def main_bearings(case: Case) -> list[Bearing]:
 
 
 def in_engine(part: Bearing, degrees: np.ndarray) -> np.ndarray:
-    found = part.at(degrees)
-    return found.load * np.exp(1j * np.radians(found.load_engine))
+    result = part.at(degrees)
+    return result.load * np.exp(1j * np.radians(result.load_engine))
 
 
 def counterweights(machine: Machine) -> complex:
@@ -99,8 +99,8 @@ def test_bearings_guides_and_covers_give_the_free_force_at_every_angle(name: str
         turning = one.masses.at_pin(one.mechanism.rod_length) * one.mechanism.crank * omega**2
         free = free + line * (forces.drive.mass * state.b + turning * np.exp(1j * np.radians(own)))
     largest = max(part.load_max.value for part in main_bearings(case))
-    told = case.balance.columns(phi)
-    assert np.abs(told["F_x"] + 1j * told["F_y"] - free).max() <= 1e-13 * largest
+    reported = case.balance.columns(phi)
+    assert np.abs(reported["F_x"] + 1j * reported["F_y"] - free).max() <= 1e-13 * largest
     assert np.abs(on_frame - free).max() <= 1e-13 * largest
     # and over a turn nothing is left of it
     assert abs(on_frame[:-1].mean()) <= 1e-13 * largest

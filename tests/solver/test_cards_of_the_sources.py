@@ -58,10 +58,10 @@ def test_diagram_factor_takes_its_share_of_the_work(kind: str) -> None:
     lowered = back + 0.8 * (plain.at(degrees).p_head - back)
     assert real.at(degrees).p_head == pytest.approx(lowered, rel=1e-11, abs=1e-4)
     assert abs(real.energy_residual) < 1e-12
-    found = kurbel.sweep(
+    result = kurbel.sweep(
         texts[1], {"indicator.head_end.diagram_factor": [0.7, 0.8, 0.9, 1.0]}, ["mean_pressure"]
     )
-    assert found["mean_pressure"] == pytest.approx(
+    assert result["mean_pressure"] == pytest.approx(
         np.array([0.7, 0.8, 0.9, 1]) * plain.mean_pressure, rel=1e-12
     )
 
@@ -75,8 +75,8 @@ def test_shaper_by_its_stroke() -> None:
         machine = kurbel.loads(shaper + link)
         assert machine.cylinders[0].mechanism.crank == pytest.approx(0.1, rel=1e-15)
         assert kurbel.solve(machine).cylinders[0].motion.stroke == pytest.approx(0.35, rel=1e-12)
-    found = kurbel.sweep(shaper, {"stroke": [0.2, 0.35]}, ["time_ratio"])
-    assert found["time_ratio"][1] == pytest.approx(
+    result = kurbel.sweep(shaper, {"stroke": [0.2, 0.35]}, ["time_ratio"])
+    assert result["time_ratio"][1] == pytest.approx(
         (90 + math.degrees(math.asin(0.25))) / (90 - math.degrees(math.asin(0.25)))
     )
 
@@ -92,8 +92,8 @@ def test_piston_rod_of_a_yoke_frame_is_bent_and_pushed() -> None:
     assert state["sigma_bend"] == pytest.approx(bending, rel=1e-13)
     assert state["sigma_rod"] == pytest.approx(push + bending, rel=1e-13)
     assert state["sigma_rod_other"] == pytest.approx(push - bending, rel=1e-13)
-    found = kurbel.sweep(text, {"gland": [0.2, 0.3, 0.4, 0.5]}, ["sigma_rod_max"])
-    assert found["sigma_rod_max"][1] == pytest.approx(
+    result = kurbel.sweep(text, {"gland": [0.2, 0.3, 0.4, 0.5]}, ["sigma_rod_max"])
+    assert result["sigma_rod_max"][1] == pytest.approx(
         kurbel.solve(text).cylinders[0]["sigma_rod_max"].value, rel=1e-12
     )
 
@@ -135,8 +135,8 @@ def test_rings_pressed_by_the_gas(written: str, k: float) -> None:
 )
 def test_metal_of_the_shells(metal: str, k_v: float, cool: bool, words: str) -> None:
     """G: 25 for gun metal, 30 to 35 for white metal, in kgf m/(cm² s)."""
-    from kurbel.notes.warnings import shell_verdict
+    from kurbel.notes.machine_results import shell_verdict
 
-    found, sentence = shell_verdict(k_v * 98066.5, metal)
-    assert found == cool
+    result, sentence = shell_verdict(k_v * 98066.5, metal)
+    assert result == cool
     assert words in sentence

@@ -72,8 +72,8 @@ def test_torque_of_a_stiff_coupling(load: Load | None) -> None:
     coupling = Coupling(stiffness, 40.0, 20.0)
     machine = of_points(POINTS, RPM, inertia=60.0, coupling=coupling, load=load)
     phi = np.array([10.0, 59.0, 61.0, 140.0, 200.0, 300.0])
-    found = machine.at(phi)
-    assert found.M_coupling == pytest.approx(found.M - 60.0 * found.alpha, rel=1e-11)
+    result = machine.at(phi)
+    assert result.M_coupling == pytest.approx(result.M - 60.0 * result.alpha, rel=1e-11)
     before, after = machine.at([60.0, 60.0], within=np.array([59.0, 61.0])).M_coupling
     assert before - after == pytest.approx(0.4 * 400, rel=1e-9)  # the jump, by J₂/(J₁ + J₂)
     assert machine.M_coupling_max.value == pytest.approx(before, rel=1e-9)
@@ -207,14 +207,14 @@ def test_two_masses_under_a_load_over_the_speed(order: float, load: Load | None)
 
     (angles, torque, speed), after = under_a_law(machine, POINTS, law, 60.0)
     inside = np.abs(angles[:, None] - np.array([a for a, _ in POINTS])).min(axis=1) > 1e-6
-    found = machine.at(angles[inside])
-    assert found.M_coupling == pytest.approx(torque[inside], abs=1e-9 * np.ptp(torque))
+    result = machine.at(angles[inside])
+    assert result.M_coupling == pytest.approx(torque[inside], abs=1e-9 * np.ptp(torque))
     if load is None:
-        assert found.omega - found.omega.mean() == pytest.approx(
+        assert result.omega - result.omega.mean() == pytest.approx(
             speed[inside] - speed[inside].mean(), abs=1e-9 * np.ptp(speed)
         )
         return
-    assert found.omega == pytest.approx(speed[inside], abs=1e-9 * np.ptp(speed))
+    assert result.omega == pytest.approx(speed[inside], abs=1e-9 * np.ptp(speed))
     assert machine.multiplier == pytest.approx(np.abs(np.linalg.eigvals(after)).max(), rel=1e-9)
     assert (machine.multiplier > 1) == (load.power == -3.0)
 

@@ -68,7 +68,7 @@ forces = st.floats(-1e6, 1e6)
 @given(forces, forces, forces, forces, st.floats(-0.15, 2.0))
 def test_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float, f: float) -> None:
     """Reactions from six equations of a rigid body, web B from what hangs on it on the side of the flywheel."""
-    found = body(D, T, (G_D, G_T), flywheel_position=f, flywheel_mass=1.0, journal_length=None)
+    result = body(D, T, (G_D, G_T), flywheel_position=f, flywheel_mass=1.0, journal_length=None)
     a, b, e, r = 0.4, 0.42, 0.17, 0.3
     # x along T, y toward the pin, z along the shaft; unknown: A and B on the shaft (x, y), the couple about z
     pin = np.array([T, -D, 0.0]), np.array([0.0, r, a])
@@ -81,30 +81,30 @@ def test_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float
     load = sum(np.array([*force[:2], *np.cross(point, force)]) for force, point in loads)
     A_x, B_x, A_y, B_y, couple = np.linalg.solve(matrix, -np.asarray(load))
     size = 1e-12 * (abs(D) + abs(T) + 3 * abs(G_D) + 3 * abs(G_T) + 1)
-    bearings = [found.A.imag[0], found.A.real[0], found.B.imag[0], found.B.real[0]]
+    bearings = [result.A.imag[0], result.A.real[0], result.B.imag[0], result.B.real[0]]
     assert bearings == pytest.approx([-A_x, A_y, -B_x, B_y], abs=4 * size)
-    assert found.torque_B[0] == pytest.approx(couple, abs=size)
+    assert result.torque_B[0] == pytest.approx(couple, abs=size)
     # what web B carries at its middle, beside the axis of the shaft: all that stands beyond it
     beyond = [(np.array([B_x, B_y, 0.0]), np.array([0.0, 0.0, a + b])), loads[1]]
     section = np.array([0.0, 0.0, a + e])
     moment = sum(
         (np.cross(point - section, force) for force, point in beyond), np.array([0.0, 0.0, couple])
     )
-    moments = found.moments_at(e)
+    moments = result.moments_at(e)
     in_plane, twist = moments.real, moments.imag
     assert abs(in_plane[0]) == pytest.approx(abs(moment[0]), abs=4 * size)
     assert abs(twist[0]) == pytest.approx(abs(moment[1]), abs=4 * size)
-    assert abs(found.torque_B[0]) == pytest.approx(abs(moment[2]), abs=size)
+    assert abs(result.torque_B[0]) == pytest.approx(abs(moment[2]), abs=size)
     # and the pin at web B, whose axis lies r higher
     section, sized = np.array([0.0, r, a + 0.11]), math.pi * 0.18**3 / 32
     moment = sum(
         (np.cross(point - section, force) for force, point in beyond), np.array([0.0, 0.0, couple])
     )
-    pin_end = place_at(found, "pin", "at web B")
+    pin_end = place_at(result, "pin", "at web B")
     assert pin_end.normal[0] * sized == pytest.approx(math.hypot(*moment[:2]), abs=4 * size)
     assert pin_end.torsion[0] * 2 * sized == pytest.approx(abs(moment[2]), abs=4 * size)
     along = sum(force[1] for force, _ in beyond)
-    assert found.along_web[0] == pytest.approx(along, abs=4 * size)
+    assert result.along_web[0] == pytest.approx(along, abs=4 * size)
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -149,7 +149,7 @@ def test_direction_of_the_weight(inclination: float, degrees: float, D: float, T
     assert weight_in_throw(1.0, CrankAngle.of(float(degrees)), float(inclination)) == complex(D, T)
 
 
-def test_the_flywheel_hangs_downward_whichever_throw_is_beside_it() -> None:
+def test_the_flywheel_hangs_downward_whichever_throw_is_next_to_it() -> None:
     """In the frame of the engine its weight is one vector at every angle, seen from the throws of both banks."""
     each = "{crank: 45 mm, rod: 150 mm, bore: 90 mm, inclination: 45 deg}"
     banks = "bank_angles: [0 deg, 60 deg]\n  spacing: 110 mm\n  crank_positions: [0 deg, 90 deg]"
@@ -207,7 +207,7 @@ class TestDeadCentre:
         )
         assert (pin.bending_out_of_plane, pin.torsion) == (0, 0)
 
-    def test_pulling_engine_stands_in_the_outer_one(self) -> None:
+    def test_pulling_engine_is_in_the_outer_one(self) -> None:
         force, degrees = strength(shaft(), card=constant_pressure(-5e4)).full_force
         assert force == pytest.approx(-5e4 * math.pi / 4 * 0.4**2, rel=1e-14)
         assert degrees == 180
@@ -264,12 +264,12 @@ def test_safety_counts_dead_centre_and_cycle() -> None:
 def test_no_section_of_the_pin_is_strained_more_than_its_places(
     D: float, T: float, G_D: float, G_T: float, f: float, along: float
 ) -> None:
-    found = body(D, T, (G_D, G_T), flywheel_position=f, flywheel_mass=1.0, journal_length=None)
+    result = body(D, T, (G_D, G_T), flywheel_position=f, flywheel_mass=1.0, journal_length=None)
     u = 0.11 * along
     before, beyond = (
-        float(np.abs(moments)[0]) for moments in (found.moments_at(-u), found.moments_at(u))
+        float(np.abs(moments)[0]) for moments in (result.moments_at(-u), result.moments_at(u))
     )
-    worst = max(place.normal[0] for place in places(found) if place.part == "pin")
+    worst = max(place.normal[0] for place in places(result) if place.part == "pin")
     assert max(before, beyond) <= worst * math.pi * 0.18**3 / 32 * (1 + 1e-12) + 1e-9
 
 
@@ -307,7 +307,7 @@ def test_overhung_against_a_free_body_in_space(
     D: float, T: float, G_D: float, G_T: float, f: float
 ) -> None:
     """Reactions from the equations of a rigid body; every section from what lies on the side of the pin alone."""
-    found = body(
+    result = body(
         D,
         T,
         (G_D, G_T),
@@ -325,7 +325,7 @@ def test_overhung_against_a_free_body_in_space(
     load = sum(np.array([*force[:2], *np.cross(point, force)[:2]]) for force, point in loads)
     A_x, B_x, A_y, B_y = np.linalg.solve(np.array(rows).T, -np.asarray(load))
     size = 1e-11 * (abs(D) + abs(T) + 3 * abs(G_D) + 3 * abs(G_T) + 1)
-    bearings = [found.A.imag[0], found.A.real[0], found.B.imag[0], found.B.real[0]]
+    bearings = [result.A.imag[0], result.A.real[0], result.B.imag[0], result.B.real[0]]
     assert bearings == pytest.approx([-A_x, A_y, -B_x, B_y], abs=size)
 
     def section(y: float, z: float, *more: tuple[Any, Any]) -> Any:
@@ -334,7 +334,7 @@ def test_overhung_against_a_free_body_in_space(
         )
 
     bearing_A = (np.array([A_x, A_y, 0.0]), np.array([0.0, 0.0, a]))
-    at = {(place.part, place.name): place for place in places(found)}
+    at = {(place.part, place.name): place for place in places(result)}
     web = section(0.0, e)
     assert at["web_A", "wide face"].compression[0] == pytest.approx(
         D / 0.12 / 0.22, abs=size / 0.0264

@@ -34,7 +34,7 @@ def turning(*cylinders: Cylinder, rpm: float | None = 50, **machine: Any) -> Mac
     return Case(Machine(named, speed=None if rpm is None else rpm / 60, **machine)).flywheel
 
 
-def test_masses_alone_do_no_work_and_fluctuate_beside_none() -> None:
+def test_masses_alone_do_no_work_and_fluctuate_against_none() -> None:
     """∮ m x′ x″ dφ = 0: their mean torque is none, where its rounding once stood as a divisor under ΔE."""
     moved = replace(ENGINE, pistons=())
     machine = turning(moved, replace(moved, crank_position=140.0))
@@ -143,9 +143,9 @@ class _Powered(MachineTurning):
 
 def test_a_column_that_is_a_product_of_others_has_its_extremes() -> None:
     """Torque times speed of an engine with a light flywheel, against ten thousand angles."""
-    found = _Powered(Case(load(CONFIGS["four-cylinder-generator"])).effort)
-    columns = found.columns(np.linspace(0.0, found.effort.cycle, 10_001), "M", "omega")
+    result = _Powered(Case(load(CONFIGS["four-cylinder-generator"])).effort)
+    columns = result.columns(np.linspace(0.0, result.effort.cycle, 10_001), "M", "omega")
     power = columns["M"] * columns["omega"]
-    assert power.max() <= found["N_max"].value * (1 + 1e-12)
-    assert found["N_max"].value == pytest.approx(power.max(), rel=1e-6)
-    assert found["N_min"].value == pytest.approx(power.min(), rel=1e-6)
+    assert power.max() <= result["N_max"].value * (1 + 1e-12)
+    assert result["N_max"].value == pytest.approx(power.max(), rel=1e-6)
+    assert result["N_min"].value == pytest.approx(power.min(), rel=1e-6)

@@ -80,9 +80,9 @@ def is_figure(text: str, figure: dict[str, Any], path: Path) -> None:
     if figure["ask"] == "check":
         machine = loads(text)
         if figure["what"] == "firing":
-            found = firings(machine)
-            angles = [angle for angle, _ in found]
-            assert "-".join(str(number) for _, number in found) == figure["order"]
+            result = firings(machine)
+            angles = [angle for angle, _ in result]
+            assert "-".join(str(number) for _, number in result) == figure["order"]
             assert angles == pytest.approx(figure["at"], rel=1e-9)
             assert intervals(angles, 720.0) == pytest.approx(figure["intervals"], rel=1e-9)
         else:

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from kurbel.accuracy.textbook import Textbook, TextbookMachine
+from kurbel.accuracy.references import Textbook, TextbookMachine
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Masses, Piston
@@ -79,18 +79,18 @@ def test_against_torques_of_40_digits(name: str, orders: list[float]) -> None:
         cylinders=(replace(machine.cylinders[0], friction=None, inclination=None),),
         efficiency=1.0,
     )
-    found = orders_of(machine, orders)
+    result = orders_of(machine, orders)
     largest = Case(machine).flywheel.M_max.value
-    assert found.machine.whole == pytest.approx(by_integrals(machine, orders), abs=1e-12 * largest)
+    assert result.machine.whole == pytest.approx(by_integrals(machine, orders), abs=1e-12 * largest)
 
 
 def test_a_diagram_with_jumps_in_closed_form() -> None:
     """Straight pieces by parts with mpmath: ∫ (a + bφ) e^{−iνφ} dφ."""
     points = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]
     orders = [1, 2, 5, 24, 200]
-    found = Case(of_points(points).machine).harmonics(np.array(orders, dtype=float)).machine.whole
+    result = Case(of_points(points).machine).harmonics(np.array(orders, dtype=float)).machine.whole
     with mpmath.workdps(40):
-        for order, amplitude in zip(orders, found):
+        for order, amplitude in zip(orders, result):
             exact = mpmath.mpc(0)
             for (low, first), (high, last) in pairwise(points):
                 if low == high:
@@ -110,11 +110,11 @@ def test_the_series_of_the_inertia_torque() -> None:
     machine = Machine(
         (Cylinder(SliderCrank(1.0, 4.0), masses=Masses(1.0)),), speed=1 / (2 * math.pi)
     )
-    found = orders_of(machine).machine.inertia[:8]
+    result = orders_of(machine).machine.inertia[:8]
     known = [0.063506260577, -0.500130140561, -0.192055573420, -0.016129031165]
     known += [0.002592310746, 0.000390320062, -4.3971084e-5, -8.396165e-6]
-    assert found.real == pytest.approx(0, abs=1e-15)
-    assert -found.imag == pytest.approx(known, abs=1e-12)
+    assert result.real == pytest.approx(0, abs=1e-15)
+    assert -result.imag == pytest.approx(known, abs=1e-12)
 
 
 def test_a_crank_that_follows_turns_its_orders() -> None:
@@ -142,12 +142,12 @@ def test_a_crank_that_follows_turns_its_orders() -> None:
 def test_major_orders(positions: tuple[float, ...], cycle: str, major: tuple[float, ...]) -> None:
     """Den Hartog: multiples of half the number of cylinders in four strokes; the others of equal cylinders vanish."""
     line = tuple(steam(name=str(p), crank_position=float(p), pistons=()) for p in positions)
-    found = orders_of(Machine(line, speed=1.0, cycle=cycle))
-    assert found.major_orders[: len(major)] == major
-    assert set(major) == {order for order in found.major_orders if order <= major[-1]}
-    others = ~np.isin(found.orders, found.major_orders)
+    result = orders_of(Machine(line, speed=1.0, cycle=cycle))
+    assert result.major_orders[: len(major)] == major
+    assert set(major) == {order for order in result.major_orders if order <= major[-1]}
+    others = ~np.isin(result.orders, result.major_orders)
     if len(positions) != 2:
-        assert not found.machine.whole[others].any()
+        assert not result.machine.whole[others].any()
     assert orders_of(Machine(line[:1], speed=1.0, cycle=cycle)).major_orders is None
 
 
@@ -166,8 +166,8 @@ def test_major_orders_are_those_in_which_all_cranks_agree(
 ) -> None:
     """|Σ e^{−iνβ}| is the number of cranks for ν = 2, 4, … of two at 180°; a degree off no order up to 24 has it."""
     cylinders = tuple(steam(name=f"at {angle}", crank_position=float(angle)) for angle in positions)
-    found = orders_of(Machine(cylinders=cylinders, speed=1.0)).major_orders
-    assert found == (
+    result = orders_of(Machine(cylinders=cylinders, speed=1.0)).major_orders
+    assert result == (
         () if major is None else tuple(float(order) for order in range(major, 25, major))
     )
 

@@ -92,8 +92,8 @@ def test_closed_work_against_50_digits(card: IdealCard, lift: float) -> None:
         card = type(card)(**{**card.__dict__, **raised})
     with mpmath.workdps(50):
         expected = precise_work(card, lift)
-        found = process_in(card, lift).area
-        assert abs(found / expected - 1) <= 1e-14
+        result = process_in(card, lift).area
+        assert abs(result / expected - 1) <= 1e-14
 
 
 @pytest.mark.parametrize("card", CARDS, ids=lambda card: type(card).__name__)

@@ -34,16 +34,16 @@ def figures(text: str, *overrides: str) -> dict[str, Any]:
 
 def test_of_a_swing_what_energy_alone_gives() -> None:
     """½ J (ω_max² − ω_min²) = ΔE, with ω_m in the middle of both."""
-    found = figures("{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}")
+    result = figures("{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}")
     omega = 10 * math.pi
-    assert found["delta"] == pytest.approx(20e3 / (500 * omega**2), rel=1e-15)
-    assert 250 * (found["omega_max"] ** 2 - found["omega_min"] ** 2) == pytest.approx(
+    assert result["delta"] == pytest.approx(20e3 / (500 * omega**2), rel=1e-15)
+    assert 250 * (result["omega_max"] ** 2 - result["omega_min"] ** 2) == pytest.approx(
         20e3, rel=1e-12
     )
-    assert (found["omega_max"] + found["omega_min"]) / 2 == pytest.approx(omega, rel=1e-15)
+    assert (result["omega_max"] + result["omega_min"]) / 2 == pytest.approx(omega, rel=1e-15)
     assert (
         not {"M_mean", "M_max", "E_max", "phi_crossing", "power_shaft", "energy_fluctuation"}
-        & found.keys()
+        & result.keys()
     )
 
 
@@ -54,12 +54,12 @@ def test_a_coefficient_is_of_the_work_of_the_cycle() -> None:
         ("cycle: four-stroke", 2),
         ("cycle_turns: 5", 5),
     ):
-        found = figures(
+        result = figures(
             f"{{speed: 300 rpm, {cycle}, {effort}, efficiency: 0.8, flywheel: {{fluctuation: 1/50}}}}"
         )
-        assert found["dE"] == pytest.approx(0.8 * 0.3 * 2e3 * 2 * math.pi * turns)
-        assert found["J"] == pytest.approx(50 * found["dE"] / (10 * math.pi) ** 2)
-        assert found["delta"] == pytest.approx(0.02)
+        assert result["dE"] == pytest.approx(0.8 * 0.3 * 2e3 * 2 * math.pi * turns)
+        assert result["J"] == pytest.approx(50 * result["dE"] / (10 * math.pi) ** 2)
+        assert result["delta"] == pytest.approx(0.02)
     bare = "effort: {unit: kN m, mean: 2, coefficient: 0.3}"
     assert (
         figures(f"{{speed: 300 rpm, {bare}}}")["dE"]
@@ -127,9 +127,9 @@ def test_what_repeats_sooner_is_the_same_in_a_longer_cycle(turns: int) -> None:
         usual.torsion["M_vibratory"].value, rel=1e-9
     )
     orders, waves = (case.harmonics().machine for case in (usual, longer))
-    found = dict(zip(np.round(waves.orders, 9), np.abs(waves.whole)))
+    result = dict(zip(np.round(waves.orders, 9), np.abs(waves.whole)))
     for order, amplitude in zip(orders.orders, np.abs(orders.whole)):
-        assert found[round(order, 9)] == pytest.approx(
+        assert result[round(order, 9)] == pytest.approx(
             amplitude, abs=1e-9 * np.abs(orders.whole).max()
         )
 
@@ -138,9 +138,9 @@ def test_a_press_that_works_once_in_three_turns() -> None:
     """A rectangle of work against a constant drive: ΔE = M_p φ_p (1 − φ_p/6π), whatever the phase."""
     press = "load: {unit: N m, points: [[0, 0], [400, 0], [400, 9000], [460, 9000], [460, 0], [1080, 0]]}"
     drive = "effort: {unit: N m, points: [[0, 500], [360, 500]]}"
-    found = figures(
+    result = figures(
         f"{{speed: 1 Hz, cycle_turns: 3, {press}, {drive}, flywheel: {{inertia: 900 kg m2}}}}"
     )
     angle = math.radians(60)
-    assert found["dE"] == pytest.approx(9000 * angle * (1 - angle / (6 * math.pi)))
-    assert found["work_shaft"] == pytest.approx(500 * 6 * math.pi)
+    assert result["dE"] == pytest.approx(9000 * angle * (1 - angle / (6 * math.pi)))
+    assert result["work_shaft"] == pytest.approx(500 * 6 * math.pi)

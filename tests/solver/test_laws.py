@@ -84,11 +84,11 @@ def test_no_angle_beats_the_extremes(forces: CylinderForces) -> None:
     dense = forces.at(np.linspace(0, 360, 3001))
     try:
         for column in ("P", "S", "N", "T"):
-            found = forces.extremes_of(column)
+            result = forces.extremes_of(column)
             values = getattr(dense, column)
             slack = 1e-12 * abs(values).max()
-            assert found.largest.value >= values.max() - slack
-            assert found.smallest.value <= values.min() + slack
+            assert result.largest.value >= values.max() - slack
+            assert result.smallest.value <= values.min() + slack
     except NoSolutionError:
         return
 
@@ -113,10 +113,10 @@ def test_druckwechsel() -> None:
     )  # + 0 +
     # + on the outstroke, nothing in the middle, − on the way back: once where − begins, once where + begins
     assert reversals_of([(0, 5), (1, 5)], [(1, -0.5), (0, -0.5)]) == (0.0, 180.0)
-    found = reversals_of(
+    result = reversals_of(
         [(0, 5), (0.5, 5), (0.5, 0), (1, 0)], [(1, 0), (0.5, 0), (0.5, -0.5), (0, -0.5)]
     )
-    assert found == pytest.approx(
+    assert result == pytest.approx(
         (0.0, float(360 - SliderCrank(0.4, 2.0).crank_angles_at(0.4, True))), abs=1e-12
     )
 
@@ -133,7 +133,7 @@ def test_one_sided_values_at_a_jump() -> None:
     assert forces.at([180.0]).p_head[0] / 98066.5 == pytest.approx(1.2, rel=1e-14)
 
 
-def test_a_vertical_jump_inside_the_stroke_stands_at_its_exact_angle() -> None:
+def test_a_vertical_jump_inside_the_stroke_is_at_its_exact_angle() -> None:
     card = Card.from_keys(
         unit=(1e5, 1), expansion=[(0, 8), (0.3, 8), (0.3, 2), (1, 2)], compression=[(1, 0), (0, 0)]
     )
@@ -143,8 +143,8 @@ def test_a_vertical_jump_inside_the_stroke_stands_at_its_exact_angle() -> None:
     angle = math.degrees(math.acos((0.4**2 + distance**2 - 2.0**2) / (2 * 0.4 * distance)))
     around = forces.at([angle - 1e-9, angle + 1e-9])
     assert list(around.p_head) == pytest.approx([8e5, 2e5], rel=1e-12)
-    found = forces.extremes_of("T")
-    assert found.largest.degrees == pytest.approx(angle, abs=1e-11)
+    result = forces.extremes_of("T")
+    assert result.largest.degrees == pytest.approx(angle, abs=1e-11)
     assert forces.work == pytest.approx(
         (0.3 * 8e5 + 0.7 * 2e5) * 0.8 * Piston(0.2).head_area, rel=1e-15
     )
@@ -162,15 +162,15 @@ def scanned(breaks: np.ndarray, evaluate: Evaluate) -> tuple[np.ndarray, np.ndar
     low, high = breaks[:-1, None], breaks[1:, None]
     degrees = low + (high - low) * np.linspace(0, 1, SAMPLES)
     within = np.broadcast_to((low + high) / 2, degrees.shape)
-    found = evaluate(degrees, within)
-    before, here, after = found[:, :-2], found[:, 1:-1], found[:, 2:]
+    result = evaluate(degrees, within)
+    before, here, after = result[:, :-2], result[:, 1:-1], result[:, 2:]
     bend = before - 2 * here + after
     step = np.clip((before - after) / np.where(bend == 0, 1.0, bend) / 2, -1, 1)
     summits = degrees[:, 1:-1] + step * np.diff(degrees)[:, 1:]
     at_summits = evaluate(summits, within[:, 1:-1])
     # ends stand beside each other, before and after a jump; between equal angles their order remains
     angles = np.concatenate((degrees, summits), axis=1)
-    values = np.concatenate((found, at_summits), axis=1)
+    values = np.concatenate((result, at_summits), axis=1)
     order = np.argsort(angles, axis=1, kind="stable")
     return np.take_along_axis(angles, order, 1).ravel(), np.take_along_axis(
         values, order, 1
@@ -201,35 +201,35 @@ def force_along(forces: CylinderForces) -> Evaluate:
 
 
 def missing_reversals(forces: CylinderForces) -> int:
-    found, extremes = forces.phi_reversal, forces.extremes_of("P")
+    result, extremes = forces.phi_reversal, forces.extremes_of("P")
     both = extremes.largest.value > 0 > extremes.smallest.value
-    return wrong_signs(np.array(found), forces.breaks, force_along(forces)) + int(
-        bool(found) != both
+    return wrong_signs(np.array(result), forces.breaks, force_along(forces)) + int(
+        bool(result) != both
     )
 
 
 def missing_crossings(forces: CylinderForces) -> int:
     shaft = Case(Machine((forces.drive.cylinder,), speed=forces.drive.machine.speed)).flywheel
-    found = shaft.extremes_of("T")
+    result = shaft.extremes_of("T")
     mean = shaft.W
 
     def evaluate(degrees: np.ndarray, within: np.ndarray) -> np.ndarray:
         return shaft.at(degrees.ravel(), within.ravel()).T.reshape(degrees.shape) - mean
 
-    size = max(abs(extreme.value) for extreme in found)
+    size = max(abs(extreme.value) for extreme in result)
     return wrong_signs(np.array(shaft.phi_crossing), forces.breaks, evaluate, size)
 
 
 @pytest.mark.parametrize("summit", [11.4, 1.0, 1e-3, 1e-6])
-def test_a_short_druckwechsel_is_found(summit: float) -> None:
+def test_a_short_force_reversal_is_found(summit: float) -> None:
     """A constant pressure that leaves P_max of a few newtons beside a P_min of thousands."""
     lowest = single_acting(0.4, 0.4 / 0.3, 0.3, 0.0, 120, 100).motion.b_min
     pressure = (summit + 100 * lowest.value) / (math.pi / 4 * 0.3**2)
     forces = single_acting(0.4, 0.4 / 0.3, 0.3, pressure, 120, 100)
-    found = forces.extremes_of("P")
-    assert found.largest.value == pytest.approx(summit, abs=1e-11)
+    result = forces.extremes_of("P")
+    assert result.largest.value == pytest.approx(summit, abs=1e-11)
     assert len(forces.phi_reversal) == 4
-    assert np.abs(forces.at(forces.phi_reversal).P).max() <= 1e-12 * -found.smallest.value
+    assert np.abs(forces.at(forces.phi_reversal).P).max() <= 1e-12 * -result.smallest.value
 
 
 def test_no_angle_is_missing_in_random_cylinders() -> None:

@@ -39,7 +39,7 @@ def line(
 
 def swings(vibration: ShaftVibration) -> np.ndarray:
     """Highest and lowest torques of the segments in N m."""
-    return np.array([(one.M_shaft_max, one.M_shaft_min) for one in vibration.segments])
+    return np.array([(segment.M_shaft_max, segment.M_shaft_min) for segment in vibration.segments])
 
 
 @pytest.mark.parametrize(

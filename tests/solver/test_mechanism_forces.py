@@ -113,9 +113,9 @@ def test_side_force_bends_the_piston_rod_of_a_yoke_frame() -> None:
     assert state["M_bend"] == pytest.approx(
         state.P * np.tan(psi) * (0.2 + way), rel=1e-11, abs=1e-9
     )
-    found = forces.extremes_of("M_bend")
-    assert found.largest.value >= state["M_bend"].max()
-    assert found.largest.value == pytest.approx(state["M_bend"].max(), rel=1e-3)
+    result = forces.extremes_of("M_bend")
+    assert result.largest.value >= state["M_bend"].max()
+    assert result.largest.value == pytest.approx(state["M_bend"].max(), rel=1e-3)
     assert solved(YokeFrame(0.1, 0.3), pistons=(STEAM,)).at(DENSE)["M_bend"] is None
 
 
@@ -151,8 +151,8 @@ def test_inertia_of_a_coupling_rod() -> None:
     assert forces["coupler_inertia"].value == pytest.approx(
         145 * (0.305 * 8 * math.pi) ** 2 / 0.305, rel=1e-14
     )
-    found = forces.extremes_of("F_coupler")
-    assert found.largest.value == pytest.approx(9000 / 0.305, rel=1e-14)
+    result = forces.extremes_of("F_coupler")
+    assert result.largest.value == pytest.approx(9000 / 0.305, rel=1e-14)
     assert (
         "coupler_inertia" not in solved(ParallelCrank(0.305, 2.1), moment=Moment(9000)).key_values()
     )

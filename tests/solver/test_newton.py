@@ -20,8 +20,8 @@ ENGINE = """
 
 
 def residual() -> float:
-    found = Case(loads(ENGINE)).cylinders[0].residual
-    return found
+    result = Case(loads(ENGINE)).cylinders[0].residual
+    return result
 
 
 def test_sound_forces_leave_nothing_open() -> None:

@@ -1,4 +1,4 @@
-"""Oil films: figures of an independent solver, closed forms, a second integrator, and errors that these would catch."""
+"""Oil films: figures of another solver, closed forms, a second integrator, planted errors."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ def text_of(name: str, **changes: Any) -> str:
     film = FILMS[name]
     machine = yaml.safe_load(CONFIGS[film["file"]].read_text(encoding="utf-8"))
     machine |= film.get("instead", {})
-    machine["oil_film"] = given(film["oil_film"] | changes)
-    return str(yaml.safe_dump(given(machine), sort_keys=False))
+    machine["oil_film"] = without_gaps(film["oil_film"] | changes)
+    return str(yaml.safe_dump(without_gaps(machine), sort_keys=False))
 
 
-def given(keys: dict[str, Any]) -> dict[str, Any]:
+def without_gaps(keys: dict[str, Any]) -> dict[str, Any]:
     """Return the keys that have a value."""
     return {key: value for key, value in keys.items() if value is not None}
 
@@ -130,10 +130,10 @@ def test_mobility(
     theory: str, epsilon: float, angle: float, slenderness: float, along: float, across: float
 ) -> None:
     seen = seen_from_load(epsilon, angle)
-    of = shape(slenderness, theory)
+    bearing = shape(slenderness, theory)
     p, q = np.array(seen.real), np.array(seen.imag)
-    found = oil_film.mobility(p, q, of.lam, of.finite)
-    assert found == pytest.approx((along, across), rel=1e-13)
+    mobilities = oil_film.mobility(p, q, bearing.lam, bearing.finite)
+    assert mobilities == pytest.approx((along, across), rel=1e-13)
 
 
 @pytest.mark.parametrize(("epsilon", "angle", "peak"), PEAKS)
@@ -142,12 +142,12 @@ def test_largest_pressure_of_a_short_film(epsilon: float, angle: float, peak: fl
     assert oil_film.peak_factor(seen) == pytest.approx(peak, rel=1e-13)
 
 
-def film_under(load: Callable[[np.ndarray], Any], turning: float, of: FilmShape) -> OilFilm:
-    """Return the film under a load (n,) in N at crank angles in radians, of a shaft with 1 rad/s."""
+def film_under(load: Callable[[np.ndarray], Any], turning: float, of_shape: FilmShape) -> OilFilm:
+    """Return the film of a shaft with 1 rad/s under a load (n,) at crank angles in radians."""
     pieces = Pieces.between(NOWHERE, 1, 360.0)
     phi = np.radians(pieces.degrees)
     pressed = np.asarray(load(phi) + np.zeros_like(phi), complex)
-    return OilFilm(of, pieces, pressed, np.full_like(phi, turning), 1.0, None)
+    return OilFilm(of_shape, pieces, pressed, np.full_like(phi, turning), 1.0, None)
 
 
 @pytest.mark.parametrize(("slenderness", "epsilon", "sommerfeld", "attitude"), STEADY)
@@ -167,11 +167,11 @@ def test_steady_load(
     [(0.3, 0.2990), (0.5, 0.4976), (0.7, 0.6975), (0.9, 0.8988), (0.95, 0.9494)],
 )
 def test_short_bearing_is_that_of_ocvirk_within_its_fit(ocvirk: float, fitted: float) -> None:
-    """NACA TN 2808: F/(μ ω L³ D/(8 c²)) = ε/(1 − ε²)² √(π² (1 − ε²) + 16 ε²)/… under a steady load."""
+    """NACA TN 2808, a steady load: F = μ ω L³ R/(4 c²) · ε/(1 − ε²)² √(π² (1 − ε²) + 16 ε²)."""
     rest = 1 - ocvirk**2
     lam = 0.25
     load = ocvirk / rest**2 * math.sqrt(math.pi**2 * rest + 16 * ocvirk**2)
-    # F = μ ω L³ R/(4 c²) · load, and K F = F (2c/D)²/(μ L D ω)
+    # K F = F (2c/D)²/(μ L D ω)
     film = film_under(lambda phi: lam**2 / 2 * load, 1.0, shape(lam, "short"))
     assert film.eccentricity_max.value == pytest.approx(fitted, abs=5.1e-5)
 
@@ -180,7 +180,7 @@ def test_short_bearing_is_that_of_ocvirk_within_its_fit(ocvirk: float, fitted: f
     ("load", "gap"), [(1.0, 0.37794889757840894), (300.0, 0.009130088426614044)]
 )
 def test_squeezed_along_a_line(load: float, gap: float) -> None:
-    """Nothing turns: (1 − ε)^(−3/2) − (1 + ε)^(−3/2) = 3 K F/(π λ²) at the end of the half-turn that presses."""
+    """Nothing turns: (1 − ε)^(−3/2) − (1 + ε)^(−3/2) = 3 K F/(π λ²) after half a turn."""
     film = film_under(lambda phi: load * np.sin(phi), 0.0, shape(0.5, "short"))
     end = film.at_angles(np.array([180.0]), np.array([0j]))
     assert end
@@ -224,12 +224,15 @@ STEPS = 40
 
 
 def marched(bearing: Bearing, frame: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return crank angles, and ε by marching through a cycle in a frame, seen from the shell, from the orbit's start."""
+    """Return crank angles, and ε seen from the shell, marched through a cycle in a frame.
+
+    It starts at the orbit of the film.
+    """
     film = bearing.film
     assert film
-    of = film.shape
-    machine_omega = bearing.omega
-    K = of.mobility_number(machine_omega)
+    K = film.shape.mobility_number(bearing.omega)
+
+    # the angles of all steps and stages, and the load there
     nodes = DOP853.C[: DOP853.n_stages]
     ends = film.pieces.ends
     widths = np.repeat(np.diff(ends) / STEPS, STEPS)
@@ -241,6 +244,7 @@ def marched(bearing: Bearing, frame: str) -> tuple[np.ndarray, np.ndarray]:
     frames = bearing._frames(degrees.ravel(), middles.ravel())
     sign = -1.0 if bearing.of_rod else 1.0
     load = sign * K * frames[frame].reshape(degrees.shape)
+
     # how fast the frame turns, and how the shell is seen from it
     shell = {"crank_pin": "rod", "crosshead_pin": "rod", "journals": "engine"}[bearing.key]
     psi_slope = _swing(bearing, degrees) if bearing.of_rod else np.zeros_like(degrees)
@@ -253,20 +257,28 @@ def marched(bearing: Bearing, frame: str) -> tuple[np.ndarray, np.ndarray]:
     y = film.at_angles(ends[:1], np.array([1.0 + 0j]))
     assert y
     start = complex(*y.y[:, 0]) / math.hypot(1.0, *y.y[:, 0]) / to_shell[0]
-    return starts, _marched(start, load, entrainment, np.radians(widths), of) * to_shell
+    return starts, _marched(start, load, entrainment, np.radians(widths), film.shape) * to_shell
 
 
 def _swing(bearing: Bearing, degrees: np.ndarray) -> np.ndarray:
+    """Return dψ/dφ."""
     mechanism = bearing.cylinders[0].drive.mechanism
     sin = mechanism.lam * np.sin(np.radians(degrees))
     return np.asarray(mechanism.lam * np.cos(np.radians(degrees)) / np.sqrt(1 - sin**2))
 
 
 def _marched(
-    epsilon: complex, load: np.ndarray, entrainment: np.ndarray, widths: np.ndarray, of: FilmShape
+    epsilon: complex,
+    load: np.ndarray,
+    entrainment: np.ndarray,
+    widths: np.ndarray,
+    film_shape: FilmShape,
 ) -> np.ndarray:
-    lam, finite = of.lam, of.finite
-    stages, weights = DOP853.A, DOP853.B
+    """Return ε at the starts of steps; load: K F, and entrainment, (steps, stages) each."""
+    lam = film_shape.lam
+    finite = film_shape.finite
+    stages = DOP853.A
+    weights = DOP853.B
     path = []
     for step, width in enumerate(widths.tolist()):
         path.append(epsilon)
@@ -309,19 +321,19 @@ def test_orbit_by_a_second_integrator(name: str, bearing: str, frame: str) -> No
 
 
 def test_two_lands_are_two_bearings_of_half_the_load() -> None:
-    """Of the oil that they squeeze out, the half that flows into the groove stays in the bearing."""
+    """Of the oil that they squeeze out, half flows into the groove and stays in the bearing."""
     land = shape(0.4)
     both = land._replace(length=2 * land.length, lands=2)
 
     def load(phi: np.ndarray) -> np.ndarray:
         return 3 + np.exp(1j * phi)
 
-    one = film_under(load, 1.0, land)
-    two = film_under(lambda phi: 2 * load(phi), 1.0, both)
-    assert two.film_thickness_min.value == pytest.approx(one.film_thickness_min.value, rel=1e-12)
-    assert two.film_pressure_max.value == pytest.approx(one.film_pressure_max.value, rel=1e-12)
-    assert two.film_loss == pytest.approx(2 * one.film_loss, rel=1e-12)
-    assert two.side_flow == pytest.approx(one.side_flow, rel=1e-12)
+    half = film_under(load, 1.0, land)
+    whole = film_under(lambda phi: 2 * load(phi), 1.0, both)
+    assert whole.film_thickness_min.value == pytest.approx(half.film_thickness_min.value, rel=1e-12)
+    assert whole.film_pressure_max.value == pytest.approx(half.film_pressure_max.value, rel=1e-12)
+    assert whole.film_loss == pytest.approx(2 * half.film_loss, rel=1e-12)
+    assert whole.side_flow == pytest.approx(half.side_flow, rel=1e-12)
 
 
 VEE = """
@@ -420,6 +432,7 @@ REFUSED = [
         {"journals": {"clearance": "0.1 mm", "diametral_clearance": "0.2 mm"}},
         "'clearance' and 'diametral_clearance' mean the same",
     ),
+    ({"temperature": "70 °C"}, "give the 'viscosity' at that temperature"),
     ({"theory": "long"}, "'finite' or 'short'"),
 ]
 
@@ -468,8 +481,8 @@ assert LAM
 
 def without_groove(films: OilFilms, key: str, diameter: float, length: float) -> FilmShape:
     bearing = films.bearings[key]
-    found = FilmShape.of_bearing(films, key, diameter, length)
-    return found._replace(length=found.length + bearing.groove, lands=1)
+    right = FilmShape.of_bearing(films, key, diameter, length)
+    return right._replace(length=right.length + bearing.groove, lands=1)
 
 
 def flow_of_both_sides(film: OilFilm, pieces: Pieces) -> tuple[np.ndarray, np.ndarray]:
@@ -505,8 +518,8 @@ def test_figures_catch(error: str, monkeypatch: pytest.MonkeyPatch) -> None:
     parts = {part.name: part for part in Case(loads(text_of(name))).bearings.parts}
     assert misses(name, parts)
     if thickness is not None:
-        found = 1e6 * parts["crank pin"].film_thickness_min.value
-        assert found == pytest.approx(thickness, rel=2e-3)
+        micrometres = 1e6 * parts["crank pin"].film_thickness_min.value
+        assert micrometres == pytest.approx(thickness, rel=2e-3)
 
 
 def test_figures_catch_constants_that_are_swapped(monkeypatch: pytest.MonkeyPatch) -> None:

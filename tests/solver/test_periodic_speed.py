@@ -135,7 +135,7 @@ def test_no_inertia_in_a_dead_centre_is_refused() -> None:
 
 
 @pytest.mark.parametrize("load", [None, Load(power=2.0)])
-def test_a_machine_that_stalls_says_where_and_what_flywheel_would_do(load: Load | None) -> None:
+def test_a_machine_that_stalls_reports_where_and_what_flywheel_would_do(load: Load | None) -> None:
     with pytest.raises(NoSolutionError, match=r"stops near φ = [\d.]+°.* from J = ") as caught:
         _ = steam(60, load).speed
     enough = float(str(caught.value).partition("from J = ")[2].partition(" kg")[0])

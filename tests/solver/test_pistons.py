@@ -80,12 +80,12 @@ def test_piston_by_a_rocker_takes_its_own_stroke(ratio: float) -> None:
 
 def test_sweeps_have_each_piston_and_levers_of_both_signs() -> None:
     ratios = [0.5, -0.5, 1.0, -1.0, 2.0, -2.0]
-    found = kurbel.sweep(
+    result = kurbel.sweep(
         engine(), {"tandem.0.lever_ratio": ratios}, ["pump.work", "piston.work", "T_max"]
     )
     alone = [kurbel.solve(engine(str(ratio))).cylinders[0] for ratio in ratios]
-    assert found["pump.work"] == pytest.approx([one.pistons[1].work for one in alone], rel=1e-12)
-    assert found["T_max"] == pytest.approx([one.T_max.value for one in alone], rel=1e-12)
+    assert result["pump.work"] == pytest.approx([one.pistons[1].work for one in alone], rel=1e-12)
+    assert result["T_max"] == pytest.approx([one.T_max.value for one in alone], rel=1e-12)
     many = kurbel.sweep(
         engine(more=MASSES), {"masses.piston.1": [50.0, 60.0, 80.0, 90.0]}, ["P_between_max"]
     )
@@ -96,7 +96,11 @@ def test_sweeps_have_each_piston_and_levers_of_both_signs() -> None:
 def test_json_and_table_show_every_piston() -> None:
     steam, pump = answer("forces", "-", text=engine())["cylinders"][0]["pistons"]
     assert (steam["name"], pump["name"]) == ("piston", "pump")
-    assert {one["id"] for one in pump["key_values"]} == {"work", "power", "mean_pressure"}
+    assert {key_value["id"] for key_value in pump["key_values"]} == {
+        "work",
+        "power",
+        "mean_pressure",
+    }
     table = run("forces", "-", text=engine()).output
     assert "Each piston" in table
     listed = run("forces", "-", "--key-values", "-f", "csv", text=engine()).output

@@ -10,8 +10,6 @@ from kurbel.notes.warnings import cylinder_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 EXAMPLES = Path(__file__).parents[1] / "examples"
 RLO1, RLO5 = ((EXAMPLES / f"{name}.yaml").read_text("utf-8") for name in ("RLO1", "RLO5"))
 PARTS = "masses: {piston: 60 kg, piston_rod: 30 kg, crosshead: 50 kg, other: 10 kg, connecting_rod: 80 kg}"
@@ -50,8 +48,8 @@ def rod_load(degrees: mpf) -> mpf:
 def test_reversal_angles_are_roots_to_1e_9_degrees() -> None:
     with mp.workdps(40):
         wanted = [findroot(rod_load, (mpf(low), mpf(low) + mpf("0.1"))) for low in (15.9, 208.4)]
-    found = solved(RLO1).phi_rod_reversal
-    assert found == pytest.approx([float(one) for one in wanted], rel=0, abs=1e-9)
+    result = solved(RLO1).phi_rod_reversal
+    assert result == pytest.approx([float(one) for one in wanted], rel=0, abs=1e-9)
 
 
 @pytest.mark.parametrize("degrees", [0.0, 10.0, 100.0, 200.0, 355.0])
@@ -81,16 +79,16 @@ def test_weight_counts_where_the_stroke_line_leans() -> None:
     assert leaning - solved(RLO1).at([30.0]).P_rod == pytest.approx(150 * 9.80665, rel=1e-10)
 
 
-def test_pieces_of_the_reversed_load_add_up_and_the_longest_is_told() -> None:
+def test_pieces_of_the_reversed_load_add_up_and_the_longest_is_reported() -> None:
     """A pressure that pulls on the outstroke from 20° to 30° and from 50° to 80° only; harder on the way back."""
     steps = ((0, 20, 2), (20, 30, -1), (30, 50, 2), (50, 80, -1), (80, 180, 2), (180, 360, 3))
     points = [[degrees, bar] for start, end, bar in steps for degrees in range(start, end + 1, 5)]
     trace = f"{{trace: {{unit: bar, points: {points}}}}}"
-    found = solved(f"crank: 100 mm\nrod: 500 mm\nbore: 100 mm\nindicator: {{head_end: {trace}}}\n")
-    assert found.phi_rod_reversal == pytest.approx([20, 30, 50, 80], abs=1e-9)
-    assert found.reversal_angle == pytest.approx(40, abs=1e-9)
-    assert found.reversal_longest == pytest.approx(30, abs=1e-9)
-    assert found.reversal_ratio == pytest.approx(1 / 3, rel=1e-12)
+    result = solved(f"crank: 100 mm\nrod: 500 mm\nbore: 100 mm\nindicator: {{head_end: {trace}}}\n")
+    assert result.phi_rod_reversal == pytest.approx([20, 30, 50, 80], abs=1e-9)
+    assert result.reversal_angle == pytest.approx(40, abs=1e-9)
+    assert result.reversal_longest == pytest.approx(30, abs=1e-9)
+    assert result.reversal_ratio == pytest.approx(1 / 3, rel=1e-12)
 
 
 ALWAYS_PRESSED = """

@@ -50,8 +50,8 @@ def test_where_it_lifts() -> None:
     psi = np.arctan(WEIGHT / load)
     start = np.degrees(np.arcsin(np.sin(psi) * 5))
     # on the return stroke the pressure is zero and the weight alone stands on the guide
-    ((found, end),) = solved.cylinders[0].lifted
-    assert (found, end) == pytest.approx((start, 180 - start), abs=1e-9)
+    ((result, end),) = solved.cylinders[0].lifted
+    assert (result, end) == pytest.approx((start, 180 - start), abs=1e-9)
 
 
 def test_guide_pressure_and_wear() -> None:

@@ -163,8 +163,8 @@ def test_every_order_of_a_long_shaft_by_transfer_matrices() -> None:
                 state = along.copy()
             first = -state[1, 1] / state[1, 0]
             exact = np.array([complex(place[1, 0] * first + place[1, 1]) for place in places])
-        found = vibration.torques[:, 0, order]
-        assert found == pytest.approx(exact, abs=1e-12 * np.abs(exact).max())
+        result = vibration.torques[:, 0, order]
+        assert result == pytest.approx(exact, abs=1e-12 * np.abs(exact).max())
     speeds = 1j * vibration.acting.orders * vibration.omegas[0] * vibration.angles[:, 0]
     power = (vibration.driving[:, 0] * speeds.conj()).real.sum() / 2
     assert power == pytest.approx(vibration.loss[0], rel=1e-12)

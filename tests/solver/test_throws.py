@@ -404,8 +404,8 @@ def test_figures_of_every_throw(text: str, figures: dict[str, Any]) -> None:
             continue
         results = case.stress if part == "worst" else case.stress.throws[int(part.split()[1]) - 1]
         for id, value in wanted.items():
-            found = results.peak_torque if id == "M_B_peak" else results.answers[id]
-            assert abs(figure(found)) == pytest.approx(value, rel=1e-12), (part, id)
+            result = results.peak_torque if id == "M_B_peak" else results.answers[id]
+            assert abs(figure(result)) == pytest.approx(value, rel=1e-12), (part, id)
     assert case.stress.equilibrium_residual <= 1e-14
 
 
@@ -511,9 +511,9 @@ def test_rod_spacing() -> None:
 
 def test_report_and_limits() -> None:
     text = THREE + "limits: {safety_pin_min: 1, throw 2.safety_pin_min: 1.5}\n"
-    found = answer("stress", "-", text=text)
-    assert [part["name"] for part in found["throws"]] == ["throw 1", "throw 2", "throw 3"]
-    assert [column["id"] for column in found["throws"][1]["columns"]][7:9] == ["M_A", "M_B"]
+    result = answer("stress", "-", text=text)
+    assert [part["name"] for part in result["throws"]] == ["throw 1", "throw 2", "throw 3"]
+    assert [column["id"] for column in result["throws"][1]["columns"]][7:9] == ["M_A", "M_B"]
     checked = run("check", "-", text=text)
     assert checked.exit_code == 0, checked.stdout
     printed = run("stress", "-", "--places", "--width", "80", text=text).stdout

@@ -57,8 +57,8 @@ def eigenvalues(chain: Chain) -> list[mpmath.mpf]:
         for i in range(count):
             for j in range(count):
                 matrix[i, j] /= roots[i] * roots[j]
-        found = sorted(mpmath.eigsy(matrix, eigvals_only=True))
-        return [mpmath.sqrt(one) if one > 1e-45 else mpmath.mpf(0) for one in found]
+        result = sorted(mpmath.eigsy(matrix, eigvals_only=True))
+        return [mpmath.sqrt(one) if one > 1e-45 else mpmath.mpf(0) for one in result]
 
 
 CHAINS = [
@@ -78,11 +78,11 @@ def test_frequencies_with_all_their_digits(count: int, spread: float, ground: st
     """Also where masses differ by 10^10, at which numpy.linalg.eigh has no digit of the lowest mode left."""
     for seed in range(3):
         chain = at_random(count, spread, ground, seed)
-        found, exact = Modes(chain).omegas, eigenvalues(chain)
-        assert len(found) == count
-        for one, other in zip(found, exact):
+        result, exact = Modes(chain).omegas, eigenvalues(chain)
+        assert len(result) == count
+        for one, other in zip(result, exact):
             assert one == (0 if other == 0 else pytest.approx(float(other), rel=1e-14))
-        assert (found[0] == 0) == (not ground)
+        assert (result[0] == 0) == (not ground)
 
 
 HELD = [(*size, ground) for size in ((2, 0), (9, 1), (30, 0), (30, 3)) for ground in ENDS]
@@ -173,7 +173,7 @@ def test_every_order_solves_its_equations(count: int, ground: str) -> None:
     frequencies = np.array([[0.7, 20.0], [150.0, 900.0]])
     draw = np.random.default_rng(4)
     torques = draw.normal(size=(count, 2, 2)) + 1j * draw.normal(size=(count, 2, 2))
-    found = response(chain, frequencies, torques)
+    result = response(chain, frequencies, torques)
     for place, w in np.ndenumerate(frequencies):
         with mpmath.workdps(40):
             still, dampers = (
@@ -188,7 +188,7 @@ def test_every_order_solves_its_equations(count: int, ground: str) -> None:
             sides = mpmath.matrix([complex(one) for one in torques[(slice(None), *place)]])
             exact = mpmath.lu_solve(whole, sides)
         wanted = np.array([complex(one) for one in exact])
-        assert found[(slice(None), *place)] == pytest.approx(
+        assert result[(slice(None), *place)] == pytest.approx(
             wanted, abs=1e-12 * np.abs(wanted).max()
         )
 
@@ -238,10 +238,10 @@ def test_the_damping_takes_what_the_torques_give() -> None:
 
 def test_away_from_the_working_speed_the_load_takes_the_same_mean_torque() -> None:
     """A load of slip s has the slope M/(s ω_n) at ω_n, and ω_n/ω times that at ω: two masses as a linear system."""
-    found = Case(machine_of(Load(slip=0.05))).torsion
-    acting, ratio = found.vibration.acting, 1.5
+    result = Case(machine_of(Load(slip=0.05))).torsion
+    acting, ratio = result.vibration.acting, 1.5
     omega = 2 * math.pi * ratio
-    vibration = Vibration(found.vibration.chain, found.vibration.line, acting, np.array([omega]))
+    vibration = Vibration(result.vibration.chain, result.vibration.line, acting, np.array([omega]))
     mean = (60 * 500 + 120 * 300 + 60 * 400 + 120 * 400) / 360
     slope = mean / (0.05 * 2 * math.pi) / ratio
     stiffness = (2.4 * 2 * math.pi) ** 2 / (1 / 60.0 + 1 / 40.0)
@@ -272,7 +272,7 @@ def test_two_masses_in_closed_form() -> None:
         ShaftPart(inertia=second),
     )
     for speed in (0.4 * resonance, resonance / 2, resonance, 3.0 * resonance):
-        found = shaft(Harmonics(10.0, ((2.0, 6.0, 8.0),)), speed, *parts)
+        result = shaft(Harmonics(10.0, ((2.0, 6.0, 8.0),)), speed, *parts)
         square, spring = (4 * math.pi * speed) ** 2, 1 + 1j * loss
         exact = (
             stiffness
@@ -281,8 +281,8 @@ def test_two_masses_in_closed_form() -> None:
             / first
             / ((2 * math.pi * resonance) ** 2 * spring - square)
         )
-        assert found.vibration.torques[0, 0, 1] == pytest.approx(exact, rel=1e-12)
-        assert found.vibration_loss == pytest.approx(
+        assert result.vibration.torques[0, 0, 1] == pytest.approx(exact, rel=1e-12)
+        assert result.vibration_loss == pytest.approx(
             loss * stiffness * 4 * math.pi * speed * abs(exact / (stiffness * spring)) ** 2 / 2,
             rel=1e-12,
         )
@@ -340,8 +340,8 @@ def test_the_stress_of_a_stepped_piece_is_that_of_its_thinnest_section() -> None
 def test_the_mean_torque_goes_to_the_load() -> None:
     effort, piece = Harmonics(10.0, ((1.0, 3.0, 2.0),)), ShaftPart(stiffness=1e4, damping=1.0)
     masses = [ShaftPart(inertia=1.0), ShaftPart(inertia=2.0, load=True), ShaftPart(inertia=3.0)]
-    found = shaft(effort, 5.0, masses[0], piece, masses[1], piece, masses[2])
-    assert [segment.M_shaft_mean for segment in found.segments] == pytest.approx(
+    result = shaft(effort, 5.0, masses[0], piece, masses[1], piece, masses[2])
+    assert [segment.M_shaft_mean for segment in result.segments] == pytest.approx(
         [10.0, 0.0], abs=1e-14
     )
     held = shaft(effort, 5.0, ShaftPart(word="ground"), piece, masses[0], piece, masses[2])
@@ -352,7 +352,7 @@ def test_the_mean_torque_goes_to_the_load() -> None:
 
 def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
     """J + m_pin R² + m mean(x′²), the mean of (1 + λ²/4 + …)/2 with mpmath."""
-    found = Case(load(CONFIGS["coupled-blower"])).torsion
+    result = Case(load(CONFIGS["coupled-blower"])).torsion
     lam, crank = mpmath.mpf(1) / 5, mpmath.mpf("0.2")
 
     def slope(phi: Any) -> Any:
@@ -363,7 +363,7 @@ def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
         lambda phi: slope(phi) ** 2, [0, mpmath.pi / 2, mpmath.pi, 2 * mpmath.pi]
     ) / (2 * mpmath.pi)
     each = (90 + 30 + 60 + 60) * crank**2 * mean + 60 * crank**2
-    assert found.chain.inertias[0] == pytest.approx(float(900 + 2 * each), rel=1e-13)
+    assert result.chain.inertias[0] == pytest.approx(float(900 + 2 * each), rel=1e-13)
 
 
 def test_a_shaft_held_at_both_ends() -> None:
@@ -371,12 +371,12 @@ def test_a_shaft_held_at_both_ends() -> None:
     ground, mass = ShaftPart(word="ground"), ShaftPart(inertia=2.0, damping=1e-9)
     parts = [ground, ShaftPart(stiffness=3e4), mass, ShaftPart(stiffness=1e4), ground]
     effort, omega = Harmonics(80.0, ((2.0, 0.0, 12.0),)), 2 * 2 * math.pi * 5
-    found = Case(Machine((), effort=effort, speed=5.0, shaft=line_of(parts))).torsion
+    result = Case(Machine((), effort=effort, speed=5.0, shaft=line_of(parts))).torsion
     swing = 12 / (4e4 - 2 * omega**2)
-    before, after = found.segments
+    before, after = result.segments
     assert (before.name, after.name) == ("ground – mass 1", "mass 1 – ground")
     assert (before.M_shaft_mean, after.M_shaft_mean) == pytest.approx((-60, 20))
     assert (before.M_vibratory, after.M_vibratory) == pytest.approx(
         (3e4 * swing, 1e4 * swing), rel=1e-9
     )
-    assert found.natural_frequency == pytest.approx(math.sqrt(4e4 / 2) / (2 * math.pi), rel=1e-14)
+    assert result.natural_frequency == pytest.approx(math.sqrt(4e4 / 2) / (2 * math.pi), rel=1e-14)

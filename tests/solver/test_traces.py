@@ -34,8 +34,6 @@ from kurbel.traces.correct import Trace
 from kurbel.traces.read import Layout
 from representative import few
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 BAR = 1e5
 CRANK = SliderCrank(0.2, 0.9)
 
@@ -70,8 +68,8 @@ def solved(
 def test_a_constant_pressure_does_no_work(angles: Any) -> None:
     """Not even its rounding, by which a brake power would be divided."""
     points = [(angle, 2.3) for angle in angles.tolist()]
-    found = solved(Measured.from_keys(unit=(BAR, 1), points=points), cycle="four-stroke")
-    assert found["work"].value == 0
+    result = solved(Measured.from_keys(unit=(BAR, 1), points=points), cycle="four-stroke")
+    assert result["work"].value == 0
 
 
 @cache
@@ -165,17 +163,17 @@ def test_every_kink_counts_for_the_extremes() -> None:
     )
     fine = forces.at(np.arange(0, 72001) / 200)
     for name in ("P", "S", "N", "T"):
-        found = forces.extremes_of(name)
-        assert found is not None
+        result = forces.extremes_of(name)
+        assert result is not None
         column = getattr(fine, name)
-        assert found.largest.value >= column.max() * (1 - 1e-12)
-        assert found.largest.value == pytest.approx(column.max(), rel=1e-5)
-        assert found.smallest.value <= column.min() + 1e-9
+        assert result.largest.value >= column.max() * (1 - 1e-12)
+        assert result.largest.value == pytest.approx(column.max(), rel=1e-5)
+        assert result.smallest.value <= column.min() + 1e-9
     assert abs(forces.energy_residual or 0.0) < 1e-5
 
 
 @pytest.mark.parametrize(("step", "far"), [(60, True), (5, False)])
-def test_samples_too_far_apart_are_told(step: int, far: bool) -> None:
+def test_samples_too_far_apart_are_reported(step: int, far: bool) -> None:
     points = [(a, float(smooth(a))) for a in range(0, 361, step)]
     piston = Piston(0.3, indicator=Indicator(Measured.from_keys(unit=(BAR, 1), points=points)))
     case = Case(Machine((Cylinder(CRANK, pistons=(piston,)),)))
@@ -225,7 +223,7 @@ def test_the_spread_of_many_cycles(tmp_path: Path) -> None:
     angles, each = many()
     p_i = [indicated(angles, one) for one in each]
     peaks = [float(one.max()) for one in each]
-    found = in_columns(tmp_path)
+    result = in_columns(tmp_path)
     expected = {
         "cycles_measured": 12,
         "mean_pressure": statistics.fmean(p_i) * BAR,
@@ -236,8 +234,8 @@ def test_the_spread_of_many_cycles(tmp_path: Path) -> None:
         "p_max_most": max(peaks) * BAR,
         "cycle_worst": 1 + p_i.index(min(p_i)),
     }
-    assert {name: found[name].value for name in expected} == pytest.approx(expected, rel=1e-11)
-    assert found["p_max_most"].degrees == pytest.approx(
+    assert {name: result[name].value for name in expected} == pytest.approx(expected, rel=1e-11)
+    assert result["p_max_most"].degrees == pytest.approx(
         angles[int(np.argmax(each[int(np.argmax(peaks))]))]
     )
 
@@ -247,12 +245,12 @@ def test_cycles_one_below_the_other_are_those_of_columns(tmp_path: Path, lap: fl
     """The angle begins anew in every cycle, in every turn, or never."""
     angles, each = many()
     counted = np.concatenate([angles + 720.0 * number for number in range(12)])
-    found = forces(tmp_path, np.column_stack((counted % lap, each.ravel())))
-    assert found.indicated.cycles is not None
+    result = forces(tmp_path, np.column_stack((counted % lap, each.ravel())))
+    assert result.indicated.cycles is not None
     by_hand = [indicated(angles, one) * BAR for one in each]
-    assert found.indicated.cycles.mean_pressure == pytest.approx(by_hand, rel=1e-12)
+    assert result.indicated.cycles.mean_pressure == pytest.approx(by_hand, rel=1e-12)
     at = np.arange(0.0, 720.0, 7.3)
-    assert found.at(at).p_head == pytest.approx(
+    assert result.at(at).p_head == pytest.approx(
         in_columns(tmp_path).at(at).p_head, rel=1e-12, abs=1e-6
     )
 
@@ -263,14 +261,14 @@ def test_cycles_at_other_angles_each(tmp_path: Path) -> None:
     step = 0.5003
     counted = np.arange(0, 12 * 720 - 100, step)
     samples = np.interp(counted, np.arange(12 * 1440) * 0.5, each.ravel())
-    found = forces(tmp_path, np.column_stack((counted, samples)))
-    assert found["cycles_measured"].value == 11
+    result = forces(tmp_path, np.column_stack((counted, samples)))
+    assert result["cycles_measured"].value == 11
     by_hand = [indicated(angles, one) * BAR for one in each[:11]]
-    assert found["mean_pressure"].value == pytest.approx(statistics.fmean(by_hand), rel=1e-3)
-    assert found.drive.own_gas.head is not None  # type: ignore[union-attr]
+    assert result["mean_pressure"].value == pytest.approx(statistics.fmean(by_hand), rel=1e-3)
+    assert result.drive.own_gas.head is not None  # type: ignore[union-attr]
     assert any(
         "after lap 23 of 360 deg are left out" in note
-        for note in found.drive.own_gas.head.trace.notes
+        for note in result.drive.own_gas.head.trace.notes
     )  # type: ignore
 
 
@@ -279,11 +277,11 @@ def test_uneven_samples_of_each_cycle(tmp_path: Path) -> None:
     angles, each = many()
     kept = np.sort(np.random.default_rng(3).choice(len(angles), 1100, replace=False))
     kept[0] = 0
-    found = forces(
+    result = forces(
         tmp_path, np.column_stack((angles[kept], each[:2, kept].T)), ", pressure_columns: 2-3"
     )
-    assert found.indicated.cycles is not None
-    for one, area in zip(each[:2, kept], found.indicated.cycles.mean_pressure):
+    assert result.indicated.cycles is not None
+    for one, area in zip(each[:2, kept], result.indicated.cycles.mean_pressure):
         assert area == pytest.approx(straight(angles[kept], one, 0.0, 720.0) * BAR, rel=1e-11)
 
 
@@ -305,22 +303,22 @@ def straight(angles: Any, pressures: Any, begin: float, end: float) -> float:
 
 
 def test_gross_and_net(tmp_path: Path) -> None:
-    found = forces(tmp_path, TABLE)
+    result = forces(tmp_path, TABLE)
     exchange = straight(FINE, ONE, 180.0, 540.0) * BAR
-    assert found["mean_pressure_exchange"].value == pytest.approx(exchange, rel=1e-11)
+    assert result["mean_pressure_exchange"].value == pytest.approx(exchange, rel=1e-11)
     assert exchange < 0
     total = indicated(FINE, ONE) * BAR
-    assert found["mean_pressure"].value == pytest.approx(total, rel=1e-12)
-    assert found["mean_pressure_gross"].value == pytest.approx(total - exchange, rel=1e-12)
+    assert result["mean_pressure"].value == pytest.approx(total, rel=1e-12)
+    assert result["mean_pressure_gross"].value == pytest.approx(total - exchange, rel=1e-12)
 
 
 @pytest.mark.parametrize("level", [1.0, 3.7])
 def test_without_a_pumping_loop_there_is_no_pressure_of_it(tmp_path: Path, level: float) -> None:
     """The same pressure through exhaust and intake: 1e-16 bar were told."""
     one = np.where((FINE >= 180) & (FINE <= 540), level, absolute(ENGINE, FINE))
-    found = forces(tmp_path, np.column_stack((FINE, one)))
-    assert found["mean_pressure_exchange"].value == 0
-    assert found["mean_pressure_gross"].value == found["mean_pressure"].value
+    result = forces(tmp_path, np.column_stack((FINE, one)))
+    assert result["mean_pressure_exchange"].value == 0
+    assert result["mean_pressure_gross"].value == result["mean_pressure"].value
     nearly = forces(
         tmp_path, np.column_stack((FINE, np.where((FINE > 200) & (FINE < 300), one + 1e-9, one)))
     )
@@ -331,10 +329,12 @@ def test_one_cycle_and_each_cycle(tmp_path: Path) -> None:
     angles, each = many()
     file = machine(tmp_path, np.column_stack((angles, each.T)), ", pressure_columns: 2-13")
     runner = CliRunner()
-    told = json.loads(
+    reported = json.loads(
         runner.invoke(kurbel, ["forces", str(file), "--cycle", "7", "-f", "json"]).stdout
     )
-    values = {one["id"]: one["value"] for one in told["cylinders"][0]["key_values"]}
+    values = {
+        key_value["id"]: key_value["value"] for key_value in reported["cylinders"][0]["key_values"]
+    }
     assert values["mean_pressure"] == pytest.approx(indicated(angles, each[6]) * BAR, rel=1e-12)
     assert "cycles_measured" not in values
     table = runner.invoke(kurbel, ["forces", str(file), "--each-cycle", "-f", "csv"]).stdout
@@ -374,14 +374,14 @@ def test_cycles_that_are_not_there(
 def test_exponents_are_those_of_the_lines(tmp_path: Path) -> None:
     """The trace is p V^1.33 while it is compressed; after the burning, times a factor that is all but constant."""
     engine = Engine(lasts=30.0)
-    found = forces(tmp_path, np.column_stack((FINE, absolute(engine, FINE))), ", clearance: 1/14")
-    assert found["n_compression"].value == pytest.approx(1.33, abs=1e-9)
-    assert found["n_expansion"].value == pytest.approx(1.33, abs=2e-3)
-    assert found["V_clearance"].value == pytest.approx(AREA * STROKE / 14, rel=1e-12)
+    result = forces(tmp_path, np.column_stack((FINE, absolute(engine, FINE))), ", clearance: 1/14")
+    assert result["n_compression"].value == pytest.approx(1.33, abs=1e-9)
+    assert result["n_expansion"].value == pytest.approx(1.33, abs=2e-3)
+    assert result["V_clearance"].value == pytest.approx(AREA * STROKE / 14, rel=1e-12)
     ratio = forces(
         tmp_path, np.column_stack((FINE, absolute(engine, FINE))), ", compression_ratio: 15"
     )
-    assert ratio["n_compression"].value == pytest.approx(found["n_compression"].value, rel=1e-12)
+    assert ratio["n_compression"].value == pytest.approx(result["n_compression"].value, rel=1e-12)
 
 
 def test_volume_over_pressure_is_the_work(tmp_path: Path) -> None:
@@ -399,12 +399,12 @@ def test_volume_over_pressure_is_the_work(tmp_path: Path) -> None:
 
 
 def test_largest_rise_of_pressure(tmp_path: Path) -> None:
-    found = forces(tmp_path, TABLE)["p_rise_max"]
+    result = forces(tmp_path, TABLE)["p_rise_max"]
     rises = (
         np.roll(ONE, -2) - ONE
     )  # over 1 deg, between samples; between them the chord is a mean of two
-    assert found.value == pytest.approx(float(rises.max()) * BAR, rel=1e-12)
-    assert found.degrees == pytest.approx((float(FINE[int(np.argmax(rises))]) + 0.5) % 720)
+    assert result.value == pytest.approx(float(rises.max()) * BAR, rel=1e-12)
+    assert result.degrees == pytest.approx((float(FINE[int(np.argmax(rises))]) + 0.5) % 720)
 
 
 def test_brake_and_friction(tmp_path: Path) -> None:
@@ -461,8 +461,8 @@ def test_pegging_lifts_every_cycle(tmp_path: Path) -> None:
 
 
 def test_drift_is_a_line(tmp_path: Path) -> None:
-    found = forces(tmp_path, np.column_stack((FINE, ONE + 3 * FINE / 720)), ", drift: linear")
-    assert found["mean_pressure"].value == pytest.approx(indicated(FINE, ONE) * BAR, rel=2e-3)
+    result = forces(tmp_path, np.column_stack((FINE, ONE + 3 * FINE / 720)), ", drift: linear")
+    assert result["mean_pressure"].value == pytest.approx(indicated(FINE, ONE) * BAR, rel=2e-3)
     closed = np.append(FINE, 720.0)
     known = forces(
         tmp_path,

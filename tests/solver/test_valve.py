@@ -367,9 +367,9 @@ def test_a_planted_error_gives_another_figure(
 ) -> None:
     right = GEARS[gear]["motion"][id][0]
     plant(monkeypatch)
-    found = kurbel.solve(GEARS[gear]["machine"])[id].value
-    assert found == pytest.approx(wrong, abs=6e-6)
-    assert abs(found - right) > 1e-3
+    result = kurbel.solve(GEARS[gear]["machine"])[id].value
+    assert result == pytest.approx(wrong, abs=6e-6)
+    assert abs(result - right) > 1e-3
 
 
 MISREAD = [
@@ -395,9 +395,9 @@ def test_a_key_that_is_misread_gives_another_figure(
         text = with_key(text, f"valve.{key}", value)
     machine = yaml.safe_load(text)
     machine["valve"] = {key: value for key, value in machine["valve"].items() if value is not None}
-    (found,) = events(yaml.safe_dump(machine), id)
-    assert abs(found - GEARS[gear]["motion"][id][0]) > 1e-3
-    assert wrong is None or found == pytest.approx(wrong, abs=6e-6)
+    (result,) = events(yaml.safe_dump(machine), id)
+    assert abs(result - GEARS[gear]["motion"][id][0]) > 1e-3
+    assert wrong is None or result == pytest.approx(wrong, abs=6e-6)
 
 
 def test_openings_end_at_the_port() -> None:

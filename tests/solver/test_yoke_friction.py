@@ -44,27 +44,27 @@ def free_body(
 def test_forces_are_those_of_the_free_bodies() -> None:
     degrees = np.array([7.0, 52.0, 88.0, 93.0, 155.0, 188.0, 231.0, 268.0, 272.0, 349.0])
     state = case("constant: 300 N, guides: 0.07, block: 0.09").cylinders[0].at(degrees)
-    found = free_body(np.radians(degrees), 300.0, 0.07, 0.09)
-    assert pytest.approx(found["T"], rel=1e-12) == state.T
-    assert pytest.approx(found["D"], rel=1e-12) == state.D
-    assert pytest.approx(found["T"] * R, rel=1e-12) == state.M
-    assert pytest.approx(found["along"], rel=1e-12) == state.along_rod
+    result = free_body(np.radians(degrees), 300.0, 0.07, 0.09)
+    assert pytest.approx(result["T"], rel=1e-12) == state.T
+    assert pytest.approx(result["D"], rel=1e-12) == state.D
+    assert pytest.approx(result["T"] * R, rel=1e-12) == state.M
+    assert pytest.approx(result["along"], rel=1e-12) == state.along_rod
     # the guides carry the weight and what the block drags across
-    assert pytest.approx(MASS * 9.80665 + found["across"], rel=1e-12) == state.N
+    assert pytest.approx(MASS * 9.80665 + result["across"], rel=1e-12) == state.N
 
 
 def test_works_are_integrals_of_the_free_bodies() -> None:
     forces = case("constant: 300 N, guides: 0.07, block: 0.09, crank_pin: 0.08").cylinders[0]
     count = 1_000_000
     phi = (np.arange(count) + 0.5) * (2 * math.pi / count)
-    found, step = free_body(phi, 300.0, 0.07, 0.09), 2 * math.pi / count
-    guides = (found["drag"] * np.abs(R * np.sin(phi))).sum() * step
-    block = (np.abs(found["across"] * R * np.cos(phi))).sum() * step
-    pin = 0.08 * PIN / 2 * np.hypot(found["along"], found["across"]).sum() * step
+    result, step = free_body(phi, 300.0, 0.07, 0.09), 2 * math.pi / count
+    guides = (result["drag"] * np.abs(R * np.sin(phi))).sum() * step
+    block = (np.abs(result["across"] * R * np.cos(phi))).sum() * step
+    pin = 0.08 * PIN / 2 * np.hypot(result["along"], result["across"]).sum() * step
     assert forces.work_block == pytest.approx(block, rel=1e-9)
     assert forces.friction_works["guides"] == pytest.approx(guides, rel=1e-9)
     assert forces.work_crank_pin == pytest.approx(pin, rel=1e-9)
-    left = (found["T"] * R).sum() * step - pin
+    left = (result["T"] * R).sum() * step - pin
     assert 2 * math.pi * R * forces.W == pytest.approx(left, rel=1e-9)
     assert abs(forces.energy_residual) < 1e-13
 

@@ -121,7 +121,8 @@ def _ideal(
         stroke: int, begin: Precise, pressure: Precise, end: Precise, exponent: float
     ) -> StrokeLine:
         n = mpf(exponent)
-        begin, end = mpf(begin), mpf(end)
+        begin = mpf(begin)
+        end = mpf(end)
         end_pressure = pressure
         if begin != end:  # without a distance there may be no volume
             end_pressure = pressure * ((begin + clearance) / (end + clearance)) ** n
@@ -132,7 +133,8 @@ def _ideal(
             assert card.cut_off is not None
             of_card = card.cut_off, card.release, card.compression, card.lead
             events = Fractions(*map(mpf, of_card))
-        admission, exhaust = mpf(card.admission) + lift, mpf(card.exhaust) + lift
+        admission = mpf(card.admission) + lift
+        exhaust = mpf(card.exhaust) + lift
         yield level(0, 0, admission, events.cut_off)
         yield curve(0, events.cut_off, admission, events.release, card.exponent)
         yield level(0, events.release, exhaust, 1)
@@ -146,7 +148,8 @@ def _ideal(
         yield from _compressor(card, lift)
     else:
         # the firing stroke, the strokes that change the gas, and compression
-        intake, back = mpf(card.intake) + lift, mpf(card.back_pressure) + lift
+        intake = mpf(card.intake) + lift
+        back = mpf(card.back_pressure) + lift
         compression = curve(3 if is_four_stroke else 1, 1, intake, 0, card.exponent)
         peak = compression.end_pressure if card.peak is None else mpf(card.peak) + lift
         cut_off = card.cut_off if isinstance(card, Diesel) else 0
@@ -160,16 +163,15 @@ def _ideal(
 
 def _compressor(card: Compressor, lift: Precise) -> Iterator[StrokeLine]:
     """Yield what the valves make of expansion and compression: they open where p V^n meets the pressure outside."""
-    clearance, suction, delivery = (
-        mpf(card.clearance),
-        mpf(card.suction) + lift,
-        mpf(card.delivery) + lift,
-    )
+    clearance = mpf(card.clearance)
+    suction = mpf(card.suction) + lift
+    delivery = mpf(card.delivery) + lift
     if card.unloaded:
         yield StrokeLine(0, mpf(0), suction, mpf(1), suction, None, clearance)
         yield StrokeLine(1, mpf(1), suction, mpf(0), suction, None, clearance)
         return
-    expansion, exponent = mpf(card.of_expansion), mpf(card.exponent)
+    expansion = mpf(card.of_expansion)
+    exponent = mpf(card.exponent)
     fills = clearance * (delivery / suction) ** (1 / expansion) - clearance
     empties = (1 + clearance) * (suction / delivery) ** (1 / exponent) - clearance
     yield StrokeLine(0, mpf(0), delivery, fills, suction, expansion, clearance)

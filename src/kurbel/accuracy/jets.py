@@ -50,7 +50,8 @@ class Jet:
 
     def size(self) -> Jet:
         """Return the distance from 0."""
-        across, along = self.imaginary(), self.real()
+        across = self.imaginary()
+        along = self.real()
         return (along * along + across * across).root()
 
     def bearing(self) -> Jet:

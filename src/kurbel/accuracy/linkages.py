@@ -61,10 +61,12 @@ class RodMotion:
     """
 
     start: Precise = mpf(0)
-    works_out, never_returns = True, False
+    works_out = True
+    never_returns = False
 
     def __init__(self, mechanism: Mechanism) -> None:
-        self.r, self.rod = mpf(mechanism.crank), mpf(mechanism.rod_length)
+        self.r = mpf(mechanism.crank)
+        self.rod = mpf(mechanism.rod_length)
         offset = mpf(mechanism.offset)
         self.at_pin = partial(stance, self.r, self.rod, offset, sqrt=mp.sqrt)
         inner = mp.degrees(mp.asin(offset / (self.rod + self.r)))
@@ -86,7 +88,8 @@ class LeverMotion:
     works_out = True
 
     def __init__(self, mechanism: SlottedLever) -> None:
-        self.r, self._frame = mpf(mechanism.crank), mpf(mechanism.frame)
+        self.r = mpf(mechanism.crank)
+        self._frame = mpf(mechanism.frame)
         self._lever = None if mechanism.lever is None else mpf(mechanism.lever)
         self._link = mpf(mechanism.link)
         is_full = self._frame < self.r
@@ -104,10 +107,12 @@ class LeverMotion:
         # x counts from the middle of the stroke
         self._middle = mpf(0)
         self.ends = dead_centres(self)
-        places = [self.at(end).x for end in self.ends[:2]]
+        inner = self.at(self.ends[0]).x
+        outer = self.at(self.ends[1]).x
         if self._lever is not None:
-            self._middle = sum(places) / 2
-        self.start, self.stroke = self.at(self.ends[0]).x, places[1] - places[0]
+            self._middle = (inner + outer) / 2
+        self.start = self.at(self.ends[0]).x
+        self.stroke = outer - inner
 
     def _direction(self, turn: Jet) -> tuple[Jet, Jet]:
         """Return the unit vector of the lever, and how far the pin is from its pivot."""
@@ -138,7 +143,8 @@ class LeverMotion:
         square = 1j * lever.value
         if self._lever is None:
             return moment(self.r * turn.value, load / reach.value * square)
-        end, push = self._lever * lever.value, 1j * load
+        end = self._lever * lever.value
+        push = 1j * load
         if not mp.isinf(self._link):
             aside = self._height - mp.re(end)
             link = (aside + 1j * mp.sqrt(self._link**2 - aside**2)) / self._link
@@ -151,8 +157,10 @@ class LinkageMotion:
     """Four bars: the output is the angle of the rocker. ends … never_returns: as of a `RodMotion`."""
 
     def __init__(self, mechanism: FourBar) -> None:
-        self.r, self._frame = mpf(mechanism.crank), mpf(mechanism.frame)
-        self._coupler, self._rocker = mpf(mechanism.coupler), mpf(mechanism.rocker)
+        self.r = mpf(mechanism.crank)
+        self._frame = mpf(mechanism.frame)
+        self._coupler = mpf(mechanism.coupler)
+        self._rocker = mpf(mechanism.rocker)
         self.never_returns = self._frame < self.r
         self.ends = dead_centres(self)
         self.start = self.at(self.ends[0]).x
@@ -191,7 +199,8 @@ class LinkageMotion:
 class ParallelMotion:
     """Two cranks that turn alike, with elastic couplers on two pairs at 90°. Names as of a `RodMotion`."""
 
-    works_out, never_returns = True, True
+    works_out = True
+    never_returns = True
     start: Precise = mpf(0)
 
     def __init__(self, mechanism: ParallelCrank) -> None:

@@ -21,8 +21,8 @@ from kurbel.arrays import Array
 
 _CYCLES = 20
 """Cycles that a march takes at most."""
-_MOST = 12_000
-"""Evaluations that an adaptive method takes at most, all cycles together."""
+_MOST = {"RK45": 12_000, "DOP853": 12_000, "Radau": 4_000, "LSODA": 12_000}
+"""Evaluations that an adaptive method takes at most, all cycles together; Radau's take three times as long."""
 _NEWTON = 12
 """Steps of Newton's method at most."""
 _STEPS = (36, 360, 1800)
@@ -54,60 +54,65 @@ class Problem:
     """The equation in floats; cycle in degrees."""
 
     def __init__(self, equation: ShaftEquation, fits: Fits, cycle: int) -> None:
-        self.equation, self.fits, self.cycle = equation, fits, cycle
+        self.equation = equation
+        self.fits = fits
+        self.cycle = cycle
         self.evaluations = 0
+        self.most_evaluations = 0
         self._edges = fits.edges.tolist()
         self._terms = fits.series.transpose(0, 2, 1)[:, :, ::-1].tolist()
 
-    def known(self, degrees: float) -> tuple[float, float]:
+    def torque_and_energy(self, degrees: float) -> tuple[float, float]:
         """Return torque and energy at an angle within the cycle, by Clenshaw's rule."""
         piece = min(bisect_right(self._edges, degrees), len(self._edges) - 1) - 1
-        low, high = self._edges[piece], self._edges[piece + 1]
-        place = (2 * degrees - low - high) / (high - low)
-        twice = 2 * place
+        low = self._edges[piece]
+        high = self._edges[piece + 1]
+        share = (2 * degrees - low - high) / (high - low)
+        twice = 2 * share
         values = []
         for series in self._terms:
             first = second = 0.0
             for coefficient in series[piece]:
                 first, second = coefficient + twice * first - second, first
-            values.append(first - place * second)
+            values.append(first - share * second)
         return values[0], values[1]
 
-    def known_at(self, degrees: Array) -> Array:
+    def drives_at(self, degrees: Array) -> Array:
         """Return torque and energy (2, n) at angles of the cycle."""
         return self.fits.at(degrees, np.clip(degrees, 1e-9, self.cycle - 1e-9))
 
-    def rate(self, known: tuple[float, float], y: Sequence[float]) -> list[float]:
-        """Return y′ by radians; raises Stopped where the shaft stands still or its speed is beyond all bounds."""
+    def rate(self, drive: tuple[float, float], y: Sequence[float]) -> list[float]:
+        """Return y′ by radians; drive: torque and energy. Raises Stopped where the shaft stands still or its speed is beyond all bounds."""
         self.evaluations += 1
-        torque, energy = known
+        torque, energy = drive
         if not self.equation.runs(energy, y):
             raise Stopped("blow-up")
         return self.equation.rate(torque, energy, y)
 
     def rate_at(self, radians: float, y: Array) -> list[float]:
         """Return y′ as scipy asks for it; raises Stopped after too many evaluations."""
-        if self.evaluations >= _MOST:
-            raise Stopped(f"over {_MOST} evaluations")
-        return self.rate(self.known(math.degrees(radians)), y.tolist())
+        if self.evaluations >= self.most_evaluations:
+            raise Stopped(f"over {self.most_evaluations} evaluations")
+        return self.rate(self.torque_and_energy(math.degrees(radians)), y.tolist())
 
     def start(self) -> Array:
         """Return y at uniform rotation."""
-        return np.array(self.equation.start(self.known(0.0)[1]))
+        return np.array(self.equation.start(self.torque_and_energy(0.0)[1]))
 
     def speed(self, course: Course) -> SpeedOfShaft:
         """Return what is compared of a cycle: extremes are those of its points."""
-        _, energy = self.known_at(course.degrees)
+        _, energy = self.drives_at(course.degrees)
         w = np.asarray(self.equation.speed(energy, list(course.y.T)))
         slow = 1 / (1 + w)
         slowness = np.diff(course.degrees) @ (slow[1:] + slow[:-1]) / (2 * self.cycle)
-        every = np.searchsorted(course.degrees, np.arange(EVERY, self.cycle + 1, EVERY) - 1e-6)
+        compared = np.arange(EVERY, self.cycle + 1, EVERY)
+        numbers = np.searchsorted(course.degrees, compared - 1e-6)
         omega = self.equation.nominal * (1 + w)
         M_K: tuple[float, ...] = ()
         if isinstance(self.equation, ElasticShaft):
             passed = self.equation.torque(list(course.y.T))
             M_K = passed.max(), passed.min()
-        return SpeedOfShaft(omega[every], np.ptp(w) * slowness, omega.max(), M_K)
+        return SpeedOfShaft(omega[numbers], np.ptp(w) * slowness, omega.max(), M_K)
 
 
 Turn = Callable[[Array], Course]
@@ -122,12 +127,12 @@ Reach = Callable[[Problem, Turn, float], Marched]
 def runge_kutta(problem: Problem, steps: int, y: Array) -> Course:
     """Return a cycle by so many equal steps of the classical fourth-order method."""
     degrees = np.linspace(0.0, problem.cycle, 2 * steps + 1)
-    known = problem.fits.at(degrees, np.clip(degrees, 1e-9, problem.cycle - 1e-9)).T.tolist()
+    drives = problem.drives_at(degrees).T.tolist()
     h = np.radians(problem.cycle) / steps
     state = y.tolist()
     rows = [state]
     for number in range(steps):
-        begin, middle, end = known[2 * number : 2 * number + 3]
+        begin, middle, end = drives[2 * number : 2 * number + 3]
         k1 = problem.rate(begin, state)
         k2 = problem.rate(middle, [v + h / 2 * k for v, k in zip(state, k1)])
         k3 = problem.rate(middle, [v + h / 2 * k for v, k in zip(state, k2)])
@@ -141,21 +146,25 @@ def runge_kutta(problem: Problem, steps: int, y: Array) -> Course:
 
 def by_scipy(problem: Problem, solve: Any, method: str, tolerance: float, y: Array) -> Course:
     """Return a cycle by a method of scipy, as it is called without further options, every degree."""
+    problem.most_evaluations = _MOST[method]
     degrees = np.arange(problem.cycle + 1.0)
     radians = np.radians(degrees)
     size = max(np.abs(y).max(), abs(problem.equation.load.mean))
-    found = solve(
+    absolute = 1e-3 * tolerance
+    if problem.equation.unknowns == 1:
+        absolute = size * tolerance
+    course = solve(
         problem.rate_at,
         (0.0, radians[-1]),
         y,
         method=method,
         t_eval=radians,
         rtol=tolerance,
-        atol=tolerance * (size if problem.equation.unknowns == 1 else 1e-3),
+        atol=absolute,
     )
-    if not found.success or not np.isfinite(found.y).all():
+    if not course.success or not np.isfinite(course.y).all():
         raise Stopped("no step is small enough")
-    return Course(degrees, found.y.T)
+    return Course(degrees, course.y.T)
 
 
 # the periodic state
@@ -201,7 +210,7 @@ def _marched(state: str, problem: Problem, course: Course) -> Marched:
     if problem.equation.load.is_constant:
         widths = np.diff(course.degrees) / problem.cycle
         weights = (np.append(widths, 0.0) + np.append(0.0, widths)) / 2
-        _, energy = problem.known_at(course.degrees)
+        _, energy = problem.drives_at(course.degrees)
         course = Course(course.degrees, problem.equation.leveled(energy, course.y.T, weights).T)
     return Marched(state, problem.speed(course), problem.evaluations)
 

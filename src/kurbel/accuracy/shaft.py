@@ -22,7 +22,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from kurbel.accuracy.methods import Precise, integrals, largest_and_smallest, merged, mp, mpf
-from kurbel.accuracy.textbook import DIGITS, STEPS, Textbook, TextbookMachine, needed, unknown
+from kurbel.accuracy.references import Textbook, TextbookMachine, needed, unknown
+from kurbel.accuracy.textbook import DIGITS, STEPS
 from kurbel.arrays import Array
 from kurbel.machine import Machine
 
@@ -172,7 +173,8 @@ class ElasticShaft(NamedTuple):
 
     def slopes(self, torque: Precise, energy: Precise, y: Sequence[Precise]) -> list[list[Precise]]:
         """Return the derivatives of y′ by y."""
-        k, d = self.stiffness, self.damping * self.nominal
+        k = self.stiffness
+        d = self.damping * self.nominal
         rise = self.load.slope(y[2])
         return [
             [0.0, 1.0, -1.0],
@@ -207,13 +209,14 @@ class Fits:
     """Torque and inertia as polynomials in floats, on pieces between edges (n + 1,) in degrees, which repeat."""
 
     def __init__(self, edges: Array, series: Array) -> None:
-        self.edges, self.series = edges, series
-        self._lows, self._terms = edges.tolist(), series.T.tolist()
+        self.edges = edges
+        self.series = series
 
     def at(self, phi: Array, within: Array) -> Array:
         """Return both (2, …) at angles in degrees; within: any angle of the same piece."""
         piece = np.searchsorted(self.edges, within, side="right") - 1
-        low, high = self.edges[piece], self.edges[piece + 1]
+        low = self.edges[piece]
+        high = self.edges[piece + 1]
         shares = (2 * phi - low - high) / (high - low)
         return np.stack(
             [chebyshev.chebval(shares, terms[:, piece], tensor=False) for terms in self.series]
@@ -240,7 +243,8 @@ class TextbookShaft:
             load = LoadLaw(mean, machine.load.slip, machine.load.power or 0.0)
         self.equation: ShaftEquation = RigidShaft(load, self.nominal)
         if machine.coupling is not None:
-            coupling, square = machine.coupling, self.nominal**2
+            coupling = machine.coupling
+            square = self.nominal**2
             first = self._mean(self._inertia) * square
             second = mpf(coupling.inertia) * square
             springs = mpf(coupling.stiffness), mpf(coupling.damping)
@@ -257,7 +261,7 @@ class TextbookShaft:
 
     def _inertia(self, phi: Precise, within: Precise) -> Precise:
         """Return J(φ) in kg m²."""
-        moving = [cylinder.inertia(phi - place) for cylinder, place in self._book.cylinders]
+        moving = [cylinder.inertia(phi - lag) for cylinder, lag in self._book.cylinders]
         return sum(moving, self._rigid)
 
     def energy(self, phi: Precise, within: Precise) -> Precise:
@@ -288,7 +292,8 @@ def collocation(count: int) -> tuple[Array, Array]:
     """Return Chebyshev nodes (s,) on 0 … 1, the last of them 1, and the matrix (s, s) that integrates to them."""
     with mp.workdps(DIGITS):
         nodes = [(1 + mp.cos(2 * mp.pi * k / (2 * count - 1))) / 2 for k in reversed(range(count))]
-        powers, antiderivatives = mp.matrix(count), mp.matrix(count)
+        powers = mp.matrix(count)
+        antiderivatives = mp.matrix(count)
         for row, node in enumerate(nodes):
             for k in range(count):
                 powers[row, k] = node**k
@@ -315,7 +320,10 @@ def periodic_solution(
     """
     # nodes, and what is known at them
     is_precise = edges.dtype == object
-    nodes, matrix = (part if is_precise else part.astype(float) for part in collocation(count))
+    nodes, matrix = collocation(count)
+    if not is_precise:
+        nodes = nodes.astype(float)
+        matrix = matrix.astype(float)
     degrees = edges[:-1, None] + np.diff(edges)[:, None] * nodes
     middles = np.broadcast_to((edges[1:] + edges[:-1])[:, None] / 2, degrees.shape)
     torque, energy = at(degrees, middles)
@@ -384,7 +392,8 @@ def _newton_step(
     solved = solved.reshape(elements, unknowns, count, 1 + unknowns)
 
     # what each element sends on to the next one, the last one to the first
-    offset, passed = np.zeros(unknowns), np.eye(unknowns)
+    offset = np.zeros(unknowns)
+    passed = np.eye(unknowns)
     for last in solved[:, :, -1]:
         offset = last[:, 0] + last[:, 1:] @ offset
         passed = last[:, 1:] @ passed
@@ -402,8 +411,8 @@ def _newton_step(
 
 def _too_long(y: Array, nodes: Array) -> Array:
     """Return on which elements the last coefficients of y (unknowns, elements, 1 + s) are more than its rounding."""
-    places = np.append(0.0, nodes.astype(float))
-    basis = chebyshev.chebvander(2 * places - 1, len(nodes))
+    shares = np.append(0.0, nodes.astype(float))
+    basis = chebyshev.chebvander(2 * shares - 1, len(nodes))
     series = y @ np.linalg.inv(basis).T
     tail = np.abs(series[:, :, -2:]).max(axis=2)
     swing = np.ptp(y, axis=(1, 2))[:, None]
@@ -418,7 +427,8 @@ def speed_of(shaft: TextbookShaft, most: int) -> SpeedOfShaft:
 
     Raises ArithmeticError where there is none, or more than so many elements would be needed.
     """
-    rough, edges = equation_in_floats(shaft.equation), shaft.edges
+    rough = equation_in_floats(shaft.equation)
+    edges = shaft.edges
     while True:
         mesh = periodic_solution(rough, shaft.fits.at, edges.astype(float), 14)
         if not mesh.is_long.any():
@@ -433,7 +443,8 @@ def speed_of(shaft: TextbookShaft, most: int) -> SpeedOfShaft:
 
 def _compared(shaft: TextbookShaft, mesh: Mesh) -> SpeedOfShaft:
     """Return what is compared of a solution."""
-    equation, edges = shaft.equation, mesh.edges
+    equation = shaft.equation
+    edges = mesh.edges
     w = np.asarray(equation.speed(mesh.energy, list(mesh.y[:, :, 1:])))
     ends = [mpf(angle) for angle in range(EVERY, shaft.cycle + 1, EVERY)]
     at_ends = np.array([w[np.abs(edges[1:] - end).argmin(), -1] for end in ends])
@@ -453,7 +464,8 @@ def _compared(shaft: TextbookShaft, mesh: Mesh) -> SpeedOfShaft:
     delta = (highest - lowest) / mean
     M_K: tuple[Precise, ...] = ()
     if isinstance(equation, ElasticShaft):
-        torque, samples = equation.torque, np.asarray(equation.torque(list(mesh.y[:, :, 1:])))
+        torque = equation.torque
+        samples = np.asarray(torque(list(mesh.y[:, :, 1:])))
         greatest = _largest(mesh, samples, lambda y, *_: torque(y))
         least = -_largest(mesh, -samples, lambda y, *_: -torque(y))
         M_K = greatest, least
@@ -480,7 +492,8 @@ def _largest_on(
     differences = nodes[:, None] - nodes
     np.fill_diagonal(differences, mpf(1))
     weights = 1 / differences.prod(axis=1)
-    low, high = mesh.edges[number], mesh.edges[number + 1]
+    low = mesh.edges[number]
+    high = mesh.edges[number + 1]
 
     def at(phi: Precise, within: Precise) -> Precise:
         distances = (phi - low) / (high - low) - nodes

@@ -106,15 +106,16 @@ def _rows(
         )
 
     effort = Case(machine).effort
-    own: dict[str, Callable[[], SpeedOfShaft]] = {
+    of_kurbel: dict[str, Callable[[], SpeedOfShaft]] = {
         OWN: lambda: speed_by_kurbel(MachineTurning(Case(machine).effort)),
         f"{OWN}, torque known": lambda: speed_by_kurbel(MachineTurning(effort)),
     }
-    for name, run in own.items():
+    for name, run in of_kurbel.items():
         speed, _, evaluations = watched(run)
         add(name, "adaptive", Marched("periodic", speed, evaluations), timed(run, quick))
 
-    fits, equation = shaft.fits, equation_in_floats(shaft.equation)
+    fits = shaft.fits
+    equation = equation_in_floats(shaft.equation)
     for name, points, march in rivals(partial(Problem, equation, fits, shaft.cycle)):
         begin = time.perf_counter()
         marched = march()

@@ -15,21 +15,17 @@ the rod's crosshead pin, Z that on the crank pin, τ the moment of weight and in
 pins. Friction in pins is that under the loads without it, as by the friction circles of the books.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict
-from functools import cache, partial
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.accuracy.cards import KNOWN_CARDS, CardProcess, Fractions, StrokeLine, drawn
-from kurbel.accuracy.efforts import diagram_of, knees_of
 from kurbel.accuracy.jets import Jet
 from kurbel.accuracy.linkages import RodMotion, Stance, TextbookMotion, motion_of
 from kurbel.accuracy.methods import (
-    Found,
     Precise,
-    by_gauss,
     integrals,
     merged,
     mp,
@@ -39,10 +35,8 @@ from kurbel.accuracy.methods import (
 from kurbel.accuracy.valves import events_of
 from kurbel.arrays import Array
 from kurbel.machine import CYCLES, Cylinder, Machine
-from kurbel.machine.cylinder import crank_lag
 from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.parts import Friction, GasOnRings, Piston
-from kurbel.machine.turning import Swing
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 
 DIGITS = 40
@@ -53,32 +47,6 @@ _FINEST = mpf(10) ** 33
 """Parts of a degree: angles that differ by less are equal."""
 IDLE = mpf("1e-9")
 """Work over the stroke in N, below which a piston neither drives nor is driven."""
-
-
-# what has no reference
-
-
-def taking_part(machine: Machine, quantity: str) -> tuple[Cylinder, ...]:
-    """Return the cylinders that a quantity belongs to: all, or the first one."""
-    return machine.cylinders if quantity == "ΔE" else machine.cylinders[:1]
-
-
-def unknown(machine: Machine, quantity: str) -> Iterator[str]:
-    """Yield what of a machine has no independent calculation of a quantity here."""
-    if quantity in "xcb":
-        return
-    if any(cylinder.link_rod for cylinder in machine.cylinders):
-        yield "link rods"
-    for cylinder in taking_part(machine, quantity):
-        for piston in cylinder.pistons:
-            cards = piston.chambers.values()
-            if not all(isinstance(card, KNOWN_CARDS) for card in cards):
-                yield "a trace"
-        friction = cylinder.friction
-        if friction and friction.journals and machine.crankshaft is not None:
-            yield "journals that rub in the bearings of a crankshaft"
-    if quantity == "ΔE" and isinstance(machine.effort, Swing):
-        yield "an effort of which the swing of energy is given"
 
 
 # chambers
@@ -141,7 +109,7 @@ class RodBody(NamedTuple):
     """
 
     mass: Precise
-    place: Precise
+    gravity_center: Precise
     inertia: Precise
     pin_mass: Precise
 
@@ -189,8 +157,10 @@ class TextbookCylinder:
     def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
         self.motion: TextbookMotion = motion_of(cylinder.mechanism)
         self.turns = CYCLES[machine.cycle_of(cylinder)]
-        self.omega, self._ambient = 2 * mp.pi * mpf(machine.speed or 0.0), mpf(machine.ambient)
-        self._cylinder, self._mechanism = cylinder, cylinder.mechanism
+        self.omega = 2 * mp.pi * mpf(machine.speed or 0.0)
+        self._ambient = mpf(machine.ambient)
+        self._cylinder = cylinder
+        self._mechanism = cylinder.mechanism
         self._crankshaft = machine.crankshaft
         self._set_masses(machine.inclination_of(cylinder))
         self._set_friction(cylinder.friction)
@@ -213,8 +183,8 @@ class TextbookCylinder:
         self._parts = mpf(masses.parts if masses else 0.0)
         self._rod = RodBody(mpf(0), mpf(0), mpf(0), mpf(0))
         if rod is not None and rod.center_of_gravity is not None:
-            place, inertia = mpf(rod.center_of_gravity), mpf(rod.inertia)
-            self._rod = RodBody(mpf(rod.mass), place, inertia, mpf(0))
+            inertia = mpf(rod.inertia)
+            self._rod = RodBody(mpf(rod.mass), mpf(rod.center_of_gravity), inertia, mpf(0))
         elif rod is not None:
             at_crosshead = mpf(rod.mass) * mpf(rod.share)
             self._rod = RodBody(at_crosshead, mpf(0), mpf(0), mpf(rod.mass) - at_crosshead)
@@ -232,7 +202,8 @@ class TextbookCylinder:
             return
         self._crosshead = mpf((self._mechanism.has_rod and friction.crosshead) or 0.0)
         self._rings = mpf(friction.constant or 0.0)
-        rings, mechanism = friction.rings, self._mechanism
+        rings = friction.rings
+        mechanism = self._mechanism
         if rings:
             surface = rings.count * mp.pi * mpf(self._cylinder.pistons[0].bore) * mpf(rings.height)
             pressed = surface * mpf(rings.coefficient)
@@ -273,14 +244,15 @@ class TextbookCylinder:
         chambers = []
         for end, card in piston.chambers.items():
             assert isinstance(card, KNOWN_CARDS)
-            is_head, ratio = end == "head_end", piston.lever_ratio
+            is_head = end == "head_end"
+            ratio = piston.lever_ratio
             thickness = mpf(piston.head_end_rod if is_head else piston.crank_end_rod)
             area = mp.pi / 4 * (mpf(piston.bore) ** 2 - thickness**2) * abs(mpf(ratio))
             sign = 1 if is_head == (ratio > 0) else -1
             events = None
             if valve is not None and isinstance(card, Steam):
-                places = [self._share(angle) for angle in events_of(valve, end)]
-                events = Fractions(*(place if is_head else 1 - place for place in places))
+                shares = np.array([self._share(angle) for angle in events_of(valve, end)])
+                events = Fractions(*(shares if is_head else 1 - shares))
             drawing = drawn(card, lift, turns == 2, self._ambient, events)
             strokes = 1 + max(line.stroke for line in drawing.lines)
             chambers.append(TextbookChamber(drawing, sign, area, strokes))
@@ -298,7 +270,8 @@ class TextbookCylinder:
         yield self.motion.ends[0] + 360 * self.turns
         for stroke in range(2 * self.turns):
             turn, back = divmod(stroke, 2)
-            begin, end = self.motion.ends[back], self.motion.ends[back + 1]
+            begin = self.motion.ends[back]
+            end = self.motion.ends[back + 1]
             yield begin + 360 * turn
             if self._block or self._pins_rub:
                 square = 90 + 180 * mp.ceil((begin - 90) / 180)
@@ -347,7 +320,8 @@ class TextbookCylinder:
     def at(self, phi: Precise, within: Precise) -> Forces:
         """Return the forces at a crank angle, computed once for all quantities and equal cylinders."""
         cycle = 360 * self.turns
-        angle, inside = phi % cycle, within % cycle
+        angle = phi % cycle
+        inside = within % cycle
         key = int(mp.nint(angle * _FINEST)), int(mp.nint(inside * _FINEST))
         state = self._states.get(key)
         if state is None:
@@ -356,7 +330,8 @@ class TextbookCylinder:
 
     def _forces(self, phi: Precise, within: Precise) -> Forces:
         """Return the forces at a crank angle, computed anew."""
-        pose, (sense, lines) = self.motion.at(phi), self._piece(within)
+        pose = self.motion.at(phi)
+        sense, lines = self._piece(within)
         gas = self._gas(pose, lines)
         resistance = self._resistance[0 if (sense > 0) == self.motion.works_out else 1]
         steady = self._rings + self._ring_surface * abs(gas.difference)
@@ -366,7 +341,8 @@ class TextbookCylinder:
         push += self._parts * (self._g[0] - self.omega**2 * pose.curvature)
         if not isinstance(self.motion, RodMotion):
             M = self.motion.torque_of(push, phi)
-            friction, kinks = -sense * steady, (gas.difference,)
+            friction = -sense * steady
+            kinks = (gas.difference,)
             return Forces(
                 pose.slope, gas.force, gas.driving, friction, {}, M / self.motion.r, M, kinks
             )
@@ -415,12 +391,11 @@ class TextbookCylinder:
         outward = self._rod.pin_mass * self.motion.r * self.omega**2
         x = loads.Z[0] - outward * mp.cospi(phi / 180)
         y = loads.Z[1] + outward * mp.sinpi(phi / 180)
-        Z, H = mp.hypot(x, y), mp.hypot(*loads.H)
-        crank, crosshead, journals = (
-            self._at_crank * Z,
-            self._at_crosshead * H,
-            self._at_journals * Z,
-        )
+        Z = mp.hypot(x, y)
+        H = mp.hypot(*loads.H)
+        crank = self._at_crank * Z
+        crosshead = self._at_crosshead * H
+        journals = self._at_journals * Z
         losses = {
             "crank_pin": crank * (1 + swing.rate),
             "crosshead_pin": crosshead * side * swing.rate,
@@ -441,17 +416,20 @@ class TextbookCylinder:
         self, pose: Stance, swing: Jet, sense: int, push: Precise, couple: Precise
     ) -> PinLoads:
         """Return N and the forces on the pins of a rod; couple: by friction in the pins, in the sense of rotation."""
-        sin, cos = pose.sin_psi, pose.cos_psi
-        length, rod, omega = mpf(self._mechanism.rod_length), self._rod, self.omega
+        sin = pose.sin_psi
+        cos = pose.cos_psi
+        length = mpf(self._mechanism.rod_length)
+        rod = self._rod
+        omega = self.omega
 
         # weight and inertia of the rod
         upward = cos * swing.bend - sin * swing.rate**2
         forward = -sin * swing.bend - cos * swing.rate**2
-        x = rod.mass * (self._g[0] - omega**2 * (pose.curvature + rod.place * forward))
-        y = rod.mass * (self._g[1] - omega**2 * rod.place * upward)
+        x = rod.mass * (self._g[0] - omega**2 * (pose.curvature + rod.gravity_center * forward))
+        y = rod.mass * (self._g[1] - omega**2 * rod.gravity_center * upward)
 
         # moments about the crank pin, over L
-        tilt = -(1 - rod.place / length) * (cos * y - sin * x)
+        tilt = -(1 - rod.gravity_center / length) * (cos * y - sin * x)
         turning = (couple + rod.inertia * omega**2 * swing.bend) / length
         weight = -self._parts * self._g[1]
         lift = push * sin + weight * cos + tilt - turning
@@ -470,21 +448,23 @@ class TextbookCylinder:
         block = self._block * abs(along)
         Z = along, -side * block
         on_pin = mp.hypot(*Z)
-        crank, journals = self._at_crank * on_pin, self._at_journals * on_pin
+        crank = self._at_crank * on_pin
+        journals = self._at_journals * on_pin
         slides = self.motion.r * abs(mp.cospi(phi / 180))
         losses = {"block": block * slides, "crank_pin": crank, "journals": journals}
         return PinLoads(drag, (along, mpf(0)), Z, (push, along)), losses, crank + journals
 
     def inertia(self, phi: Precise) -> Precise:
         """Return the inertia in kg m² that has the kinetic energy of all moving masses."""
-        pose, masses = self.motion.at(phi), self._cylinder.masses
+        pose = self.motion.at(phi)
+        masses = self._cylinder.masses
         inertia = self._parts * pose.slope**2
         if masses is None or not isinstance(self.motion, RodMotion):
             return inertia
         inertia += (mpf(masses.rotating) + self._rod.pin_mass) * self.motion.r**2
         swing = self._swing(phi, pose)
-        x = pose.slope - self._rod.place * pose.sin_psi * swing.rate
-        y = self._rod.place * pose.cos_psi * swing.rate
+        x = pose.slope - self._rod.gravity_center * pose.sin_psi * swing.rate
+        y = self._rod.gravity_center * pose.cos_psi * swing.rate
         return inertia + self._rod.mass * (x**2 + y**2) + self._rod.inertia * swing.rate**2
 
     @property
@@ -501,148 +481,3 @@ class TextbookCylinder:
 def _radius(coefficient: float | None, diameter: float | None) -> Precise:
     """Return the radius of a circle of friction in m, f d/2; 0 where nothing rubs."""
     return mpf(coefficient or 0.0) * mpf(diameter or 0.0) / 2
-
-
-# quantities
-
-
-NEEDED: dict[str, Callable[[Precise], Precise]] = {
-    "A_i": lambda state: state.slope * state.P_gas,
-    "T_max, T_min": lambda state: state.T,
-    "A_f": lambda state: sum(state.losses.values()) - state.slope * state.F_friction,
-    "ΔE": lambda state: state.M,
-}
-"""Quantity -> what it is the integral, the extremes or the swing of, from the columns of `Forces` or of the solver."""
-
-
-class Share(NamedTuple):
-    """What the torque of a cylinder counts for the losses (R p. 611-613), and the torque of its driving pistons."""
-
-    whole: float = 1.0
-    of_driving: float = 0.0
-
-
-class Addends(NamedTuple):
-    """What a quantity is a sum of: cylinders with the places of their cranks and their shares; diagrams with factors.
-
-    A cylinder is a function that returns its columns at angles of its own crank.
-    """
-
-    cylinders: Sequence[tuple[Callable[[Precise, Precise], Precise], Precise, Share]]
-    diagrams: Sequence[tuple[Callable[[Precise, Precise], Precise], float]] = ()
-
-
-def needed(quantity: str, addends: Addends, phi: Precise, within: Precise) -> Precise:
-    """Return what a quantity is computed from, at angles of crank 1."""
-    total = 0 * phi
-    for at, place, share in addends.cylinders:
-        state = at(phi - place, within - place)
-        total = total + share.whole * NEEDED[quantity](state)
-        if share.of_driving:
-            total = total + share.of_driving * state.P_driving * state.slope
-    for diagram, factor in addends.diagrams:
-        total = total + factor * diagram(phi, within)
-    return total
-
-
-class Textbook:
-    """The references of a machine, which share its cylinders; equal cylinders are one."""
-
-    def __init__(self, machine: Machine) -> None:
-        self.machine = machine
-        self._made: list[tuple[dict[str, Any], TextbookCylinder]] = []
-
-    def cylinder(self, cylinder: Cylinder) -> TextbookCylinder:
-        """Return the cylinder of the textbook for one of the file; where it is on the shaft makes no difference."""
-        values = asdict(cylinder)
-        for key in ("name", "crank_position", "bank_angle", "axial_position"):
-            del values[key]
-        for earlier, textbook_cylinder in self._made:
-            if earlier == values:
-                return textbook_cylinder
-        textbook_cylinder = TextbookCylinder(self.machine, cylinder)
-        self._made.append((values, textbook_cylinder))
-        return textbook_cylinder
-
-    def reference(self, quantity: str) -> Found:
-        """Return A_i and A_f in J, T_max and T_min in N, of the first cylinder, or ΔE in J."""
-        book = TextbookMachine(self, quantity)
-        return by_gauss(quantity, book.function(quantity), book.edges, STEPS)
-
-
-class TextbookMachine:
-    """Cylinders with the places of their cranks; edges: of all pieces of the cycle, at the angles of crank 1."""
-
-    def __init__(self, textbook: Textbook, quantity: str) -> None:
-        machine = textbook.machine
-        members = taking_part(machine, quantity)
-        self.cylinders = [
-            (textbook.cylinder(cylinder), mpf(crank_lag(cylinder, machine.cylinders[0])))
-            for cylinder in members
-        ]
-        turns = machine.revolutions if quantity == "ΔE" else self.cylinders[0][0].turns
-        self.cycle = 360 * turns
-        edges = [mpf(0), mpf(self.cycle)]
-        for cylinder, place in self.cylinders:
-            for turn in range(0, turns, cylinder.turns):
-                edges += [(edge + place + 360 * turn) % self.cycle for edge in cylinder.edges]
-
-        self.diagrams: list[tuple[Callable[[Precise, Precise], Precise], float]] = []
-        shares = [Share()] * len(members)
-        if quantity == "ΔE":
-            self._add_diagrams(machine)
-            edges += self._knees(machine)
-            shares = self._shares(mpf(machine.efficiency))
-        self.shares = shares
-        self.edges = merged(np.array(edges))
-
-    @property
-    def addends(self) -> Addends:
-        """What its quantity is a sum of."""
-        cylinders = [
-            (cylinder.at, place, share)
-            for (cylinder, place), share in zip(self.cylinders, self.shares)
-        ]
-        return Addends(cylinders, self.diagrams)
-
-    def _knees(self, machine: Machine) -> list[Precise]:
-        """Return where given efforts and loads bend."""
-        load = machine.load.diagram if machine.load else None
-        diagrams = [diagram for diagram in (machine.effort, load) if diagram is not None]
-        knees: list[Precise] = []
-        for diagram in diagrams:
-            assert not isinstance(diagram, Swing)
-            knees += knees_of(diagram, self.cycle)
-        return knees
-
-    def _add_diagrams(self, machine: Machine) -> None:
-        """Add a given effort with its losses, and a given load."""
-        effort, eta = machine.effort, machine.efficiency
-        if effort is not None:
-            assert not isinstance(effort, Swing)
-            torque = diagram_of(effort)
-            edges = merged(np.array([mpf(0), mpf(self.cycle), *knees_of(effort, self.cycle)]))
-            drives = integrals(np.frompyfunc(torque, 2, 1), edges, STEPS).sum() >= 0
-            self.diagrams.append((torque, eta if drives else 1 / eta))
-        if machine.load is not None and machine.load.diagram is not None:
-            self.diagrams.append((diagram_of(machine.load.diagram), -1.0))
-
-    def _shares(self, eta: Precise) -> list[Share]:
-        """Return the shares of the cylinders: of a machine that drives, driven pistons count in full."""
-        cylinders = [cylinder for cylinder, _ in self.cylinders]
-        if not any(cylinder.drives for cylinder in cylinders):
-            is_driven = any(cylinder.is_driven for cylinder in cylinders)
-            return [Share(1 / eta if is_driven else mpf(1))] * len(cylinders)
-        shares = []
-        for cylinder in cylinders:
-            share = Share()
-            if cylinder.drives and cylinder.is_driven:
-                share = Share(1.0, eta - 1)
-            elif cylinder.drives:
-                share = Share(eta)
-            shares.append(share)
-        return shares
-
-    def function(self, quantity: str) -> Callable[[Array, Array], Array]:
-        """Return what a quantity is computed from."""
-        return np.frompyfunc(partial(needed, quantity, self.addends), 2, 1)

@@ -32,11 +32,13 @@ def events_of(valve: Valve, end: str) -> ValveEvents:
     laps = [mpf(_at_ends(length)[number]) for length in (valve.steam_lap, valve.exhaust_lap)]
 
     def displacement(phi: Precise) -> Precise:
-        sin, cos = mp.sinpi(phi / 180), mp.cospi(phi / 180)
+        sin = mp.sinpi(phi / 180)
+        cos = mp.cospi(phi / 180)
         across = square * cos - ahead * sin
         return ahead * cos + square * sin + valve.sense * _nearer(across, slope) + shift
 
-    begin, late = 180 * number, 180 * number + 180
+    begin = 180 * number
+    late = begin + 180
 
     def passed(lap: Precise, sense: int, beyond: int, otherwise: int) -> Precise:
         """Return where an edge passes that of the port on the stroke that begins at an angle."""
@@ -71,7 +73,8 @@ def _nearer(across: Precise, slope: Precise) -> Precise:
 
 def _drive(valve: Valve) -> tuple[Precise, Precise, Precise, Precise]:
     """Return r sin δ, r cos δ, 1/l and ε of the one eccentric that moves the valve."""
-    r, rod = mpf(valve.travel) / 2, mpf(valve.eccentric_rod)
+    r = mpf(valve.travel) / 2
+    rod = mpf(valve.eccentric_rod)
 
     # each end has its own lead, and the same rod at both dead centres
     if valve.lead is not None:
@@ -89,7 +92,8 @@ def _drive(valve: Valve) -> tuple[Precise, Precise, Precise, Precise]:
         return r * mp.sin(delta), r * mp.cos(delta), 1 / rod, mpf(0)
 
     # Zeuner: two eccentrics and a link move the valve as one with an infinite rod
-    raised, length = mpf(valve.link.position), mpf(valve.link.half_length)
+    raised = mpf(valve.link.position)
+    length = mpf(valve.link.half_length)
     side = 1 if valve.link.rods == "open" else -1
     ahead = r * (mp.sin(delta) + side * (1 - raised**2) * length / rod * mp.cos(delta))
     return ahead, r * raised * mp.cos(delta), mpf(0), mpf(0)

@@ -5,7 +5,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
-from kurbel.checks.limits import CheckEntry, compared_entries
+from kurbel.checks.limits import (
+    CheckEntry,
+    JudgedFigure,
+    compared_entries,
+    margin_text,
+    margins,
+)
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Machine
@@ -20,7 +26,8 @@ from kurbel.notes.left_out import (
     strength_left_out,
     turning_stages,
 )
-from kurbel.notes.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
+from kurbel.notes.machine_results import bearing_warnings
+from kurbel.notes.warnings import Note, as_far_as_solved, machine_notes
 from kurbel.solver.case import Case
 from kurbel.solver.drive import any_of
 from kurbel.solver.forces import CylinderForces
@@ -88,6 +95,7 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
         Topic("Shaft line", tuple(_shaft_entries(case))),
         Topic("Delivery", tuple(_delivery_entries(case))),
         Topic("Limits", tuple(figure for figure in judged if figure.path[0] == "limits")),
+        Topic("Margins to the limits", tuple(_margin_entries(judged, machine.name))),
         Topic("Expected", tuple(figure for figure in judged if figure.path[0] == "expect")),
     ]
     sections = tuple(topic for topic in topics if topic.entries)
@@ -380,6 +388,21 @@ def _delivery_entries(case: Case) -> Iterator[CheckEntry]:
         yield from _computed(", ".join(computed), delivery_left_out(delivery))
 
 
+def _margin_entries(judged: Iterable[CheckEntry], name: str) -> Iterator[CheckEntry]:
+    """Yield a line of heads and one for each limit: its smallest margin in the machine itself and in each load case."""
+    table = margins(judged)
+    cases = list(dict.fromkeys(case for of_limit in table.values() for case in of_limit))
+    if not cases:
+        return
+    heads = [case or name for case in cases]
+    yield CheckEntry("", "  ".join(f"{head:>8}" for head in heads))
+    for limit, of_limit in table.items():
+        cells = []
+        for case, head in zip(cases, heads):
+            cells.append(f"{margin_text(of_limit.get(case)):>{max(len(head), 8)}}")
+        yield CheckEntry(limit, "  ".join(cells))
+
+
 # for programs: each finding with its place in the machine file
 
 
@@ -387,7 +410,7 @@ class Finding(NamedTuple):
     """One finding: file; line and column from 1 and the dotted key, None if it is about no key; severity.
 
     severity: `error` for a fault of the file, for a limit or an expectation that FAILs or cannot be judged; `warning`;
-    `info` for one that is a PASS, and for what is left out.
+    `info` for one that is a PASS, and for what is left out. Of a limit or an expectation the rest is its `JudgedFigure`.
     """
 
     file: str
@@ -396,6 +419,14 @@ class Finding(NamedTuple):
     key: str | None
     message: str
     severity: str
+    id: str | None = None
+    scope: str | None = None
+    value: float | None = None
+    bound: float | tuple[float, float] | None = None
+    unit: str | None = None
+    margin: float | None = None
+    verdict: str | None = None
+    case: str | None = None
 
 
 def faults_found(file: str, error: KurbelError) -> list[Finding]:
@@ -417,20 +448,20 @@ Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
 def findings(machine: Machine, checked: Checked, locate: Locate) -> list[Finding]:
     """Return the outcome of a check for programs; locate: adds to faults their places in the text of the file."""
     # paths, messages and severities
-    messages: list[tuple[Path, str, str]] = []
+    messages: list[tuple[Path, str, str, JudgedFigure | None]] = []
     for section in checked.sections:
         is_of_several = section.cylinder and len(machine.cylinders) > 1
         prefix = f"{section.title}: " if is_of_several else ""
         for entry in section.entries:
             if entry.severity:
                 text = f"{prefix}{entry.what}: {entry.text}"
-                messages.append((entry.path, text, entry.severity))
+                messages.append((entry.path, text, entry.severity, entry.figure))
     for entry in checked.unjudged:
         text = str(entry.error).removeprefix(f"{path_text(entry.path)}: ")
-        messages.append((entry.path, text, "error"))
+        messages.append((entry.path, text, "error", None))
 
     # where the keys are
-    paths = {path for path, _, _ in messages if path}
+    paths = {path for path, *_ in messages if path}
     origin = machine.origin
     positions: dict[Path, Fault] = {}
     if origin and paths:
@@ -439,9 +470,12 @@ def findings(machine: Machine, checked: Checked, locate: Locate) -> list[Finding
 
     file = origin.name if origin else machine.name
     findings = []
-    for path, text, severity in messages:
+    for path, text, severity, figure in messages:
         position = positions.get(path, Fault((), ""))
         line = position.line or None
         column = position.column or None
-        findings.append(Finding(file, line, column, path_text(path) or None, text, severity))
+        finding = Finding(file, line, column, path_text(path) or None, text, severity)
+        if figure:
+            finding = finding._replace(**figure._asdict())
+        findings.append(finding)
     return findings

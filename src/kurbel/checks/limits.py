@@ -1,7 +1,7 @@
 """How key values compare with limits and expectations of a machine file, and in a table of load cases."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -44,6 +44,25 @@ class CheckEntry(NamedTuple):
     where: str = ""
     quantity: Quantity | None = None
     error: KurbelError | None = None
+    figure: "JudgedFigure | None" = None
+
+
+class JudgedFigure(NamedTuple):
+    """A value that was compared, in SI, for programs and for the table of margins.
+
+    scope: whose it is; bound: of a limit; or the smallest and the largest value that meet an expectation; margin:
+    distance from the bound, or the nearer one, relative to it: negative on a FAIL, None for a bound of 0; case: the load
+    case, '' for the machine itself.
+    """
+
+    id: str
+    scope: str
+    value: float
+    bound: float | tuple[float, float]
+    unit: str
+    margin: float | None
+    verdict: str
+    case: str = ""
 
 
 def compared_entries(case: Case, cases: Sequence[Case] = ()) -> list[CheckEntry]:
@@ -51,9 +70,11 @@ def compared_entries(case: Case, cases: Sequence[Case] = ()) -> list[CheckEntry]
     entries = [*judged(case)]
     for load_case in cases:
         origin = load_case.machine.origin
-        suffix = f", {origin.case}" if origin else ""
+        name = origin.case if origin else ""
+        suffix = f", {name}" if origin else ""
         for entry in judged(load_case):
-            entries.append(entry._replace(what=entry.what + suffix))
+            figure = entry.figure and entry.figure._replace(case=name)
+            entries.append(entry._replace(what=entry.what + suffix, figure=figure))
     return entries
 
 
@@ -117,6 +138,16 @@ def _compared(
         text, limit, is_met = _compared_with_expected(quantity, bound, value)
     else:
         text, limit, is_met = _compared_with_bound(quantity, bound, value)
+    limits = (bound.low, bound.high) if isinstance(bound, Expected) else float(bound)
+    figure = JudgedFigure(
+        quantity.id,
+        where,
+        value,
+        limits,
+        SI[quantity.kind],
+        _margin(quantity, bound, value),
+        "PASS" if is_met else "FAIL",
+    )
     unit = bound.unit
     number = 100 * value if unit == "%" else float(convert(value, quantity.kind, unit))
     return CheckEntry(
@@ -129,7 +160,41 @@ def _compared(
         limit,
         where,
         quantity,
+        figure=figure,
     )
+
+
+def _margin(quantity: Quantity, bound: Bound | Expected, value: float) -> float | None:
+    """Return the distance of a value from its bound relative to it, positive where it is met; None for a bound of 0."""
+    if isinstance(bound, Expected):
+        distance = min(value - bound.low, bound.high - value)
+        edge = bound.low if value - bound.low < bound.high - value else bound.high
+        return distance / abs(edge) if edge else None
+    magnitude = abs(value) if quantity.id.endswith("_residual") else value
+    distance = magnitude - bound if quantity.bounded_below else bound - magnitude
+    return distance / abs(bound) if bound else None
+
+
+def margins(entries: Iterable[CheckEntry]) -> dict[str, dict[str, float]]:
+    """Return the smallest margin of each limit in each load case, by limit and case; empty without load cases."""
+    smallest: dict[str, dict[str, float]] = {}
+    for entry in entries:
+        figure = entry.figure
+        if figure is None or figure.margin is None or entry.path[0] != "limits":
+            continue
+        of_limit = smallest.setdefault(str(entry.path[-1]), {})
+        of_limit[figure.case] = min(figure.margin, of_limit.get(figure.case, figure.margin))
+    has_cases = any(case for of_limit in smallest.values() for case in of_limit)
+    return smallest if has_cases else {}
+
+
+def margin_text(margin: float | None) -> str:
+    """Return a margin in percent with its sign.
+
+    >>> margin_text(0.0389), margin_text(-1.7), margin_text(None)
+    ('+3.9 %', '-170.0 %', '–')
+    """
+    return "–" if margin is None else f"{100 * margin:+.1f} %"
 
 
 def _compared_with_expected(

@@ -13,8 +13,15 @@ from kurbel.machine_file.events import located
 from kurbel.machine_file.reader import load_cases
 from kurbel.render import Look
 from kurbel.render.json_text import findings_json, findings_junit
-from kurbel.render.output import listing, look_at, refuse_overwriting, write_out
+from kurbel.render.output import (
+    listing,
+    look_at,
+    refuse_overwriting,
+    write_entries,
+    write_out,
+)
 from kurbel.report.commands import BROKEN
+from kurbel.shipped import file_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import provenance
 
@@ -53,8 +60,11 @@ def check_files(
     format: str,
     file_name: str | None,
     width: int | None,
+    quiet: bool = False,
 ) -> int:
     """Check machine files, write what is found as `table`, `json` or `junit`, and return the exit status.
+
+    quiet: of a table only limits and expectations that FAIL.
 
     Raises UsageError where the output would overwrite what is read, and the error of an only file.
     """
@@ -62,7 +72,7 @@ def check_files(
     outcomes = [_outcome(file, case_name, overrides, file_name) for file in files]
     look = look_at(file_name, Look(width=width))
     if format == "table":
-        write_out(_as_text(outcomes, look), file_name)
+        write_out(_as_text(outcomes, look, quiet), file_name)
         for outcome in outcomes:
             if outcome.error and len(files) == 1:
                 raise outcome.error
@@ -71,6 +81,29 @@ def check_files(
     else:
         _write_findings(outcomes, format, look, file_name)
     return min((outcome.status for outcome in outcomes), key=_GRAVEST.index)
+
+
+def check_shipped(names: Sequence[str], file_name: str | None) -> int:
+    """Compare the expected figures of shipped machines, write a line for each, and return the exit status."""
+    entries = list[tuple[str, str]]()
+    statuses = [DONE]
+    for name in names:
+        outcome = _outcome(file_of(name), "", (), file_name)
+        statuses.append(outcome.status)
+        figures = []
+        for topic in outcome.checked.sections if outcome.checked else ():
+            figures += [entry for entry in topic.entries if entry.path[:1] == ("expect",)]
+        failing = [entry.what for entry in figures if entry.severity == "error"]
+        verdict = "PASS" if outcome.status == DONE else "FAIL"
+        count = {0: "no expected figure", 1: "1 expected figure"}
+        text = f"{verdict}  {count.get(len(figures), f'{len(figures)} expected figures')}"
+        if failing:
+            text += f", off: {', '.join(failing)}"
+        if outcome.error:
+            text += f"; {outcome.error}"
+        entries.append((name, text))
+    write_entries(entries, file_name)
+    return min(statuses, key=_GRAVEST.index)
 
 
 def _write_findings(
@@ -118,10 +151,19 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
     return Outcome(file, joined, machine, results)
 
 
-def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
-    """Yield the listing of every machine that could be read; of several each after the name of its file."""
+def _as_text(outcomes: Sequence[Outcome], look: Look, quiet: bool) -> Iterator[str]:
+    """Yield the listing of every machine that could be read; of several each after the name of its file.
+
+    quiet: what FAILs alone, a line each.
+    """
     for number, outcome in enumerate(outcomes):
         if outcome.checked is None:
+            continue
+        if quiet:
+            for topic in outcome.checked.sections:
+                for entry in topic.entries:
+                    if entry.severity == "error":
+                        yield f"{look.text(f'{outcome.file}: {entry.what}: {entry.text}')}\n"
             continue
         topics = []
         for topic in outcome.checked.shown_once:

@@ -234,9 +234,11 @@ class ProgressLine:
     cls=Kurbel,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=exit_statuses(),
+    invoke_without_command=True,
 )
 @click.version_option(__version__, prog_name="kurbel", message="%(prog)s %(version)s")
-def kurbel() -> None:
+@click.pass_context
+def kurbel(context: click.Context) -> None:
     """Calculate crank drives: motion, forces, friction, flywheel and crankshaft of piston machines.
 
     A machine is described in a YAML file, every value with its unit; kurbel prints tables with
@@ -257,3 +259,5 @@ def kurbel() -> None:
 
     Results go to standard output, everything else to standard error.
     """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())

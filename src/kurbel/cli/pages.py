@@ -104,6 +104,7 @@ def plot(**options: Any) -> None:
     "junit",
     said="json: every finding with its place; junit: XML that CI services read. ",
 )
+@click.option("--quiet", "-q", is_flag=True, help="Print what FAILs, and nothing else.")
 @output_option
 @width_option
 def check(format: str | None, file_name: str | None, **options: Any) -> int:

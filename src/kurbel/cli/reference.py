@@ -1,6 +1,7 @@
 """Commands that need no machine: tables of the books, shipped machines, and what a machine file may hold."""
 
 import math
+from pathlib import Path
 from typing import NamedTuple
 
 import click
@@ -21,7 +22,7 @@ from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.render.formats import Output
 from kurbel.render.output import write_entries, write_out
-from kurbel.shipped import shipped
+from kurbel.shipped import MODELINE, shipped
 from kurbel.tables.tables import table_angles
 
 
@@ -151,28 +152,44 @@ def friction(incline: float, coefficient: float, direction: float, output: Outpu
 
 @kurbel.command()
 @click.argument("name", required=False, shell_complete=completing(lambda ctx, _: shipped()))
+@click.option(
+    "--check",
+    "compare",
+    is_flag=True,
+    help="Compute the expected figures of every machine, or of NAME: a test of this installation.",
+)
 @output_option
-def example(name: str | None, file_name: str | None) -> None:
+def example(name: str | None, compare: bool, file_name: str | None) -> int | None:
     """List the machines that come with kurbel, or print the file of the machine NAME.
 
     \b
       kurbel example waterworks > engine.yaml
       kurbel example waterworks | kurbel forces -
+      kurbel example --check
     """
     files = shipped()
+    if compare and name is None:
+        from kurbel.cli.checking import check_shipped
+
+        return check_shipped(tuple(files), file_name)
     if name is None:
         entries = []
         for machine, text in files.items():
             first_line, _, _ = text.partition("\n")
             entries.append((machine, first_line.lstrip("# ")))
         write_entries(entries, file_name)
-        return
+        return None
     bare = name.removesuffix(".yaml")
     if bare not in files:
         raise UsageError(
             f"no example '{name}'{did_you_mean(bare, tuple(files))} (known: {', '.join(files)})"
         )
-    write_out((files[bare],), file_name, "utf-8")
+    if compare:
+        from kurbel.cli.checking import check_shipped
+
+        return check_shipped((bare,), file_name)
+    write_out((MODELINE, files[bare]), file_name, "utf-8")
+    return None
 
 
 @kurbel.command()
@@ -228,3 +245,11 @@ def schema(answers: bool, file_name: str | None) -> None:
 
     document = answer_schema() if answers else json_schema()
     write_out((indented(document),), file_name, "utf-8")
+
+
+@kurbel.command()
+@output_option
+def skill(file_name: str | None) -> None:
+    """Print a page for agents and newcomers: which command for which question, JSON, exit statuses, units, traps."""
+    page = Path(__file__).with_name("skill.md")
+    write_out((page.read_text(encoding="utf-8"),), file_name, "utf-8")

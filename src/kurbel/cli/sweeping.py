@@ -93,7 +93,7 @@ def run_sweep(
     refuse_overwriting(file_name, (file,))
 
     # the sweep, and which of its rows are wanted
-    system = units or ("metric" if is_for_people else "si")
+    usual_system = "metric" if is_for_people else "si"
     sweep = Sweep(
         Spec(
             source.read(file)._replace(case=case_name).set_over(overrides),
@@ -105,7 +105,7 @@ def run_sweep(
             cases,
             columns or (),
             with_angles,
-            system,
+            units or usual_system,
         )
     )
     rows = range(sweep.rows) if shard is None else rows_of_shard(shard, sweep.rows)

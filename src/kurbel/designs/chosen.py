@@ -64,9 +64,9 @@ def condition_parts(text: str) -> tuple[str, str, str]:
 def read_condition(text: str, heads: Sequence[Head], option: str = "--where") -> RowCondition:
     """Read `c_max < 5 m/s` or, for a column of words, `keeps = yes`; raises UsageError."""
     name, relation, written = condition_parts(text)
-    place = place_of(name, heads, option)
+    number = place_of(name, heads, option)
     where = f"{option} {text_in_one_line(text)}"
-    head = heads[place]
+    head = heads[number]
     if not head.kind:
         if relation not in _OF_WORDS:
             raise UsageError(
@@ -74,13 +74,13 @@ def read_condition(text: str, heads: Sequence[Head], option: str = "--where") ->
             )
         if name == "keeps" and written not in ("yes", "no", ""):
             raise UsageError(f"{where}: keeps is yes, no, or empty where a limit cannot be judged")
-        return RowCondition(place, relation, written)
+        return RowCondition(number, relation, written)
     try:
         is_infinite = head.input and written == INFINITE
         value = math.inf if is_infinite else parse_quantity(written, head.kind)
     except UnitError as error:
         raise UsageError(f"{where}: {error}") from None
-    return RowCondition(place, relation, float(convert(value, head.kind, head.unit)))
+    return RowCondition(number, relation, float(convert(value, head.kind, head.unit)))
 
 
 def place_of(name: str, heads: Sequence[Head], option: str) -> int:
@@ -90,16 +90,16 @@ def place_of(name: str, heads: Sequence[Head], option: str) -> int:
     meant = [name]
     if name not in ids:
         meant += (f"{owner}.{id}".lstrip(".") for id in KEY_VALUES.ids_of(symbol))
-    place = next((ids.index(column) for column in meant if column in ids), None)
-    if place is None:
+    number = next((ids.index(column) for column in meant if column in ids), None)
+    if number is None:
         raise UsageError(
             f"{option}: no column '{text_in_one_line(name)}'{did_you_mean(name, ids)} (there are {', '.join(ids)})"
         )
-    if heads[place].listed:
+    if heads[number].listed:
         raise UsageError(
-            f"{option}: {ids[place]} is a list of values, which is neither more nor less than another one"
+            f"{option}: {ids[number]} is a list of values, which is neither more nor less than another one"
         )
-    return place
+    return number
 
 
 def _number(value: Cell) -> float | None:
@@ -125,10 +125,10 @@ class Aim(NamedTuple):
 def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
     """Read `T_max`, the smallest value first, or `-T_max`, the largest first; raises UsageError."""
     name = text.strip()
-    place = place_of(name.removeprefix("-"), heads, option)
-    if not heads[place].kind:
-        raise UsageError(f"{option}: {heads[place].id} has words, of which none is the best")
-    return Aim(place, name.startswith("-"))
+    number = place_of(name.removeprefix("-"), heads, option)
+    if not heads[number].kind:
+        raise UsageError(f"{option}: {heads[number].id} has words, of which none is the best")
+    return Aim(number, name.startswith("-"))
 
 
 def pareto_front(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:

@@ -321,7 +321,7 @@ def _client(address: str) -> Iterator[Any]:
         from distributed import Client
         from distributed.comm import connect
     except ImportError:
-        raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
+        raise UsageError("--dask needs dask.distributed: pip install distributed") from None
 
     async def reached() -> None:
         await (await connect(address, timeout=_ANSWERS_WITHIN)).close()

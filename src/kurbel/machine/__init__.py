@@ -312,7 +312,10 @@ class Machine(Record):
         absent="no pipes",
     )
     oil_film: OilFilms | None = field(
-        _oil_films, "Oil between pins and shells, for the thickness of its film", absent="no film"
+        _oil_films,
+        "Oil between pins and shells, for the thickness of its film",
+        absent="no film",
+        also=("oil", "lubrication", "oil_films"),
     )
     origin: Origin | None = None
     cases: tuple[LoadCase, ...] = field(

@@ -294,7 +294,8 @@ def _line_faults(points: list[DiagramPoint], stroke: float, unit: str) -> list[F
     low, high = sorted((points[0][0], points[-1][0]))
     of_unit = f" {unit}" if unit else ""
     if (low, high) == (0.0, stroke):
-        return order_faults(points, f"{{:g}}{of_unit}" if unit else "fraction {:g}")
+        format = f"{{:g}}{of_unit}" if unit else "fraction {:g}"
+        return order_faults(points, format)
     message = (
         f"the line must reach from 0 to {stroke:g}{of_unit}; "
         f"it runs from {low:g} to {high:g}{of_unit}; "

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from os.path import basename
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from kurbel.errors import Fault, RuleError, refused
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
 from kurbel.traces.cycles import samples_of_file, whole_cycles
 from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout
+
+if TYPE_CHECKING:
+    from kurbel.traces.heat import HeatLaw
 
 
 class Columns(Record):
@@ -127,6 +130,12 @@ class Columns(Record):
         return Layout(columns, delimiter=words.get(delimiter, delimiter), **keys)
 
 
+def _heat_law() -> "type[HeatLaw]":
+    from kurbel.traces.heat import HeatLaw
+
+    return HeatLaw
+
+
 class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 
@@ -216,6 +225,20 @@ class Measured(Columns):
         absent="that in the cylinder at its smallest volume",
     )
 
+    heat = alternative(
+        RecordForm(_heat_law),
+        "Heat release, by the first law from pressure and volume",
+        absent="not computed",
+    )
+
+    @classmethod
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        """Yield the rules on keys that contradict one another."""
+        yield from super().rules_of_keys(values)
+        has_volumes = "clearance" in values or "compression_ratio" in values
+        message = "heat needs the volumes; give 'clearance' or 'compression_ratio'"
+        yield Rule("heat", "heat" in values and not has_volumes, message)
+
     @classmethod
     def of_keys(
         cls,
@@ -232,6 +255,7 @@ class Measured(Columns):
         compression_ratio: float | None = None,
         suction_line: float | None = None,
         discharge_line: float | None = None,
+        heat: "HeatLaw | None" = None,
         **layout: Any,
     ) -> Trace:
         """Return the trace that these keys describe, its file read."""
@@ -285,6 +309,7 @@ class Measured(Columns):
             clock=samples.clock,
             suction=suction_line,
             discharge=discharge_line,
+            heat=heat,
         )
 
 

@@ -19,8 +19,8 @@ _WIDEST = 1 / 20
 """Radial clearance over diameter from which on the formulas of a thin film do not hold."""
 
 
-class Size(NamedTuple):
-    """A diameter or length of a pin that is given elsewhere, in m, and the key and record that give it."""
+class PinDimension(NamedTuple):
+    """A diameter or length of a pin in m, and the key and record that give it."""
 
     value: Number
     key: str
@@ -32,11 +32,21 @@ _ELSEWHERE = {
     "crosshead_pin": ("crosshead_pin_diameter", "", "crosshead_pin_length", ""),
     "journals": ("journal_diameter", "journal_diameter", "", "journal_length"),
 }
-"""Key -> keys of the diameter in `friction` and in `crankshaft`, and of the length in both; '' for none."""
+"""Key -> keys of the diameter in `friction` and `crankshaft`, and of the length in both, or ''."""
+
+
+_WARM = (
+    "give the 'viscosity' at that temperature, such as '20 mPa s', which oils of ISO VG 100 have "
+    "at about 75 °C"
+)
+_NO_KEYS = dict.fromkeys(("temperature", "oil_temperature", "grade", "oil"), _WARM)
+"""Words that people try -> what to write instead."""
 
 
 class FilmBearing(Record):
     """The bearing of a pin or of all journals; lengths in m, viscosity in Pa s."""
+
+    UNWRITTEN = _NO_KEYS
 
     clearance: float = field(
         "length",
@@ -91,6 +101,8 @@ class FilmBearing(Record):
 class OilFilms(Record):
     """What oil there is between pins and shells; a pin or bearing that is not named has no film."""
 
+    UNWRITTEN = _NO_KEYS
+
     viscosity: float | None = field(
         "viscosity",
         "Dynamic viscosity of the oil in the film, at its temperature there",
@@ -109,7 +121,8 @@ class OilFilms(Record):
     )
     theory: str = field(
         ("finite", "short"),
-        "Mobility of a film of finite length, or of a short bearing to compare with books: its films are too thick",
+        "Mobility of a film of finite length, or of a short bearing to compare with books: its "
+        "films are too thick",
         default="finite",
         absent="finite",
     )
@@ -134,7 +147,7 @@ class OilFilms(Record):
     def rules_beside(
         self, shaft: Crankshaft | None, frictions: Iterable[Friction | None]
     ) -> Iterator[Rule]:
-        """Yield the rules on sizes of bearings, some of which `crankshaft` or `friction` may give."""
+        """Yield the rules on sizes of bearings, which `crankshaft` or `friction` may give."""
         records: list[tuple[str, Record]] = [
             ("friction", friction) for friction in frictions if friction
         ]
@@ -142,25 +155,27 @@ class OilFilms(Record):
             records.append(("crankshaft", shaft))
         for key, bearing in self.bearings.items():
             in_friction, in_shaft, length_in_friction, length_in_shaft = _ELSEWHERE[key]
-            diameters = list(_given(records, in_friction, in_shaft))
-            lengths = list(_given(records, length_in_friction, length_in_shaft))
+            diameters = list(_sizes_in(records, in_friction, in_shaft))
+            lengths = list(_sizes_in(records, length_in_friction, length_in_shaft))
             for rule in _rules_of(bearing, diameters, lengths):
                 yield rule.below(key)
 
 
-def _given(
+def _sizes_in(
     records: Iterable[tuple[str, Record]], in_friction: str, in_shaft: str
-) -> Iterator[Size]:
+) -> Iterator[PinDimension]:
     """Yield the sizes with these keys that records give."""
     keys = {"friction": in_friction, "crankshaft": in_shaft}
     for name, record in records:
         key = keys[name]
         size = vars(record)[key] if key else None
         if size is not None:
-            yield Size(size, key, name)
+            yield PinDimension(size, key, name)
 
 
-def _rules_of(bearing: FilmBearing, diameters: list[Size], lengths: list[Size]) -> Iterator[Rule]:
+def _rules_of(
+    bearing: FilmBearing, diameters: list[PinDimension], lengths: list[PinDimension]
+) -> Iterator[Rule]:
     """Yield the rules on a bearing whose pin has these sizes elsewhere."""
     for size in diameters[:1]:
         same = f"'{size.key}' in '{size.record}' gives the same; leave one of them out"
@@ -177,8 +192,8 @@ def _rules_of(bearing: FilmBearing, diameters: list[Size], lengths: list[Size]) 
         diameter = diameters[0].value
     if diameter is not None:
         wide = (
-            "a radial clearance of {clearance:length} is too much for a diameter of {diameter:length}; "
-            "usual is about 1/2000 of it"
+            "a radial clearance of {clearance:length} is too much for a diameter of "
+            "{diameter:length}; usual is about 1/2000 of it"
         )
         numbers = {"clearance": bearing.clearance, "diameter": diameter}
         yield Rule("clearance", bearing.clearance >= _WIDEST * diameter, wide, numbers)

@@ -23,13 +23,16 @@ def of_cycle(machine: Machine, number: int) -> Machine:
             period = 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]
             ends: dict[str, Any] = {}
             for end, chamber in piston.chambers.items():
-                if chamber.traced and (count := len(chamber.over(period).samples)) > 1:
-                    counts.append(count)
-                    ends[end] = alone.setdefault(
-                        id(chamber), chamber.of_cycle(min(number, count), period)
-                    )
-            shown = replace(piston.indicator, **ends) if piston.indicator else None
-            pistons.append(replace(piston, indicator=shown))
+                if not chamber.traced:
+                    continue
+                count = len(chamber.over(period).samples)
+                if count < 2:
+                    continue
+                counts.append(count)
+                cycle = chamber.of_cycle(min(number, count), period)
+                ends[end] = alone.setdefault(id(chamber), cycle)
+            indicator = replace(piston.indicator, **ends) if piston.indicator else None
+            pistons.append(replace(piston, indicator=indicator))
         cylinders.append(replace(cylinder, pistons=tuple(pistons)))
     if not counts:
         raise UsageError("--cycle: no trace of this machine has several cycles; leave it out")

@@ -160,13 +160,15 @@ class Masses(Record):
 
     def at_pin(self, rod_length: float) -> float:
         """Mass in kg that turns with the crank pin, with the share of a connecting rod of this length in m."""
-        rod = self.connecting_rod
-        return self.rotating + (rod.at_pin(rod_length) if rod else 0.0)
+        if self.connecting_rod is None:
+            return self.rotating
+        return self.rotating + self.connecting_rod.at_pin(rod_length)
 
     def at_crosshead(self, rod_length: float) -> float:
         """Reciprocating mass m in kg (R 298): all parts, and the share of a connecting rod of this length in m."""
-        rod = self.connecting_rod
-        return self.parts + (rod.at_crosshead(rod_length) if rod else 0.0)
+        if self.connecting_rod is None:
+            return self.parts
+        return self.parts + self.connecting_rod.at_crosshead(rod_length)
 
 
 class GasOnRings(Record):

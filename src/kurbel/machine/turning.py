@@ -350,7 +350,9 @@ def harmonics_of(unit: UnitFactor, mean: float, terms: list[DiagramPoint]) -> Ha
             message = f"order {order:g} is no number of periods per turn; {bounds}"
             refused(message, "harmonics", index, 0)
     # no torque is too large for its unit
-    sizes = [(0.0, mean if isinstance(mean, InUnit) else 0.0)]
+    sizes: list[DiagramPoint] = []
+    if isinstance(mean, InUnit):
+        sizes.append((0.0, mean))
     sizes += [(order, abs(cosine) + abs(sine)) for order, cosine, sine in terms]
     refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque")))
     # in N m

@@ -117,7 +117,7 @@ class Parser:
             is_text = node is not REFUSED and node != ""
             positions = self.values if is_text else self.keys
             positions.setdefault(tuple(self._path), _position(event))
-        is_unsupported = self._guard(event)
+        is_unsupported = self._reports_unsupported(event)
         if isinstance(event, yaml.CollectionStartEvent):
             if len(self._path) >= DEPTH_LIMIT:
                 self._stop(event, _TOO_DEEP)
@@ -151,7 +151,7 @@ class Parser:
                 has_valid_keys = False
                 self._below(name, event)
             else:
-                is_unsupported = self._guard(event)
+                is_unsupported = self._reports_unsupported(event)
                 if not name:
                     self._report(event, "a key is missing before the colon")
                 has_valid_keys = has_valid_keys and bool(name) and not is_unsupported
@@ -168,8 +168,8 @@ class Parser:
             mapping[name] = REFUSED if is_repeated else value
         return mapping if has_valid_keys else REFUSED
 
-    def _guard(self, event: Any) -> bool:
-        """Note a tag, an anchor or an alias, and return whether there is one."""
+    def _reports_unsupported(self, event: Any) -> bool:
+        """Report a tag, an anchor or an alias, and return whether there is one."""
         if isinstance(event, yaml.AliasEvent):
             alias = text_in_one_line(str(event.anchor))
             message = f"'*{alias}' is not supported; write the value itself{_LIKE}"

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -19,7 +19,7 @@ from kurbel.declared.reading import (
     node_kind,
     text_in_one_line,
 )
-from kurbel.declared.units import ZEROED_UNITS
+from kurbel.declared.units import ZEROED_UNITS, unit_names
 from kurbel.errors import Fault, MachineFileError, Path, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
@@ -129,11 +129,9 @@ def read_values(origin: Origin, reading: Reading) -> ReadMapping:
         assert isinstance(mapping, ReadMapping)
         return mapping
     # faults of overrides have no position in the file
-    of_overrides: list[Fault] = []
-    of_file: list[Fault] = []
-    for fault in reading.faults[len(faults_of_yaml) :]:
-        fault = with_override(fault, overrides)
-        (of_overrides if fault.override else of_file).append(fault)
+    others = [with_override(fault, overrides) for fault in reading.faults[len(faults_of_yaml) :]]
+    of_overrides = [fault for fault in others if fault.override]
+    of_file = [fault for fault in others if not fault.override]
     raise origin.error(*faults_of_yaml, *of_overrides, *located(origin.text, of_file))
 
 
@@ -153,11 +151,15 @@ def _without_zeros(tree: Node, reading: Reading, path: Path = (), reference: str
     """Return a tree without such units; one that does not agree with its reference, gauge or absolute, is a fault.
 
     Pressures of an indicator are gauge or absolute by its `pressures`, the ambient is absolute, others are neither.
+    Where all units of an indicator name the vacuum, `pressures` need not be given.
     """
     if isinstance(tree, dict):
-        if path[-1:] == ("indicator",):
-            reference = "absolute" if tree.get("pressures") == "absolute" else "gauge"
         mapping = {}
+        if path[-1:] == ("indicator",):
+            if "pressures" not in tree and set(_zeros(tree)) == {"absolute"}:
+                mapping["pressures"] = "absolute"
+            written = tree.get("pressures", mapping.get("pressures"))
+            reference = "absolute" if written == "absolute" else "gauge"
         for key, node in tree.items():
             reference_of_key = _REFERENCES.get(key, reference)
             mapping[key] = _without_zeros(node, reading, (*path, key), reference_of_key)
@@ -171,6 +173,27 @@ def _without_zeros(tree: Node, reading: Reading, path: Path = (), reference: str
             for index, node in enumerate(tree)
         ]
     return _without_zero(tree, reading, path, reference) if isinstance(tree, str) else tree
+
+
+def _zeros(tree: Node, key: str = "") -> Iterator[str]:
+    """Yield the zero of every pressure that has one: `absolute`, `gauge`, or '' where its unit does not name it."""
+    if isinstance(tree, dict):
+        for name, node in tree.items():
+            if name not in _REFERENCES:
+                yield from _zeros(node, name)
+    elif isinstance(tree, list):
+        has_points = bool(tree) and isinstance(tree[0], list)
+        for node in () if has_points else tree:
+            yield from _zeros(node, key)
+    elif isinstance(tree, str):
+        text = familiar(tree).strip()
+        number = re.match(WRITTEN, text)
+        unit = text[number.end() :].strip() if number else text
+        if number or key == "unit":
+            if unit in ZEROED_UNITS:
+                yield ZEROED_UNITS[unit][0]
+            elif unit in unit_names("pressure"):
+                yield ""
 
 
 def _without_zero(text: str, reading: Reading, path: Path, reference: str) -> Node:

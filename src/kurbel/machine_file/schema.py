@@ -34,6 +34,7 @@ def json_schema() -> Schema:
         root["properties"][name] |= _of_figures(form, key_values(), definitions)
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
+        "$id": "urn:kurbel:machine-file:1",
         "title": "kurbel machine file",
         "description": "Every physical value is a number with its unit, such as 450 mm.",
         **root,
@@ -115,16 +116,15 @@ def _of_number(form: NumberForm, definitions: Schema) -> Schema:
         return integer
     if form.kind == "ratio":
         largest = KINDS["ratio"].largest
-        bounds = {
-            "exclusiveMinimum": form.above,
-            "minimum": -largest if form.least is None else form.least,
-            "exclusiveMaximum": form.below,
-            "maximum": largest if form.most is None else form.most,
-        }
+        least = -largest if form.least is None else form.least
+        most = largest if form.most is None else form.most
         number: Schema = {"type": ["number", "string"]}
-        for name, bound in bounds.items():
-            if bound is not None:
-                number[name] = bound
+        if form.above is not None:
+            number["exclusiveMinimum"] = form.above
+        number["minimum"] = least
+        if form.below is not None:
+            number["exclusiveMaximum"] = form.below
+        number["maximum"] = most
         number["pattern"] = f"^\\s*{RATIO}\\s*$"
     else:
         name = f"quantity_{form.kind}"

@@ -89,9 +89,11 @@ def requested_column(
     plain: str = "",
 ) -> Offer:
     """Return a column that a mechanism adds to both, printed on request."""
-    both = ("motion", "forces")
+    commands = ("motion", "forces")
     return Offer(
-        Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both), factor, omega
+        Quantity(id, symbol, kind, text, plain, commands, after=after, on_request=commands),
+        factor,
+        omega,
     )
 
 
@@ -392,7 +394,7 @@ def _swing(order: int) -> Offer:
     )
     return Offer(
         quantity,
-        lambda one, angle: one.swing_at(angle)[order],
+        lambda mechanism, angle: mechanism.swing_at(angle)[order],
         order,
         # in forces x gives the position of what slides
         unless=lambda results: results.command == "forces" and bool(results.mechanism.slides),
@@ -422,7 +424,7 @@ SWING_VALUES = (
             _BOTH,
             after="stroke",
         ),
-        lambda one, _: one.swing,
+        lambda mechanism, _: mechanism.swing,
     ),
     KeyOffer(
         Quantity(
@@ -434,7 +436,7 @@ SWING_VALUES = (
             _BOTH,
             after="stroke",
         ),
-        lambda one, _: min(_ends(one), default=None),
+        lambda mechanism, _: min(_ends(mechanism), default=None),
     ),
     KeyOffer(
         Quantity(
@@ -446,7 +448,7 @@ SWING_VALUES = (
             _BOTH,
             after="stroke",
         ),
-        lambda one, _: max(_ends(one), default=None),
+        lambda mechanism, _: max(_ends(mechanism), default=None),
     ),
 )
 """Of a mechanism with `swing_at`, and a `swing` in degrees, None where the member turns fully."""
@@ -456,7 +458,7 @@ F_COUPLER = force_column(
     "F_K",
     "force",
     "Force in the coupler, thrust positive",
-    lambda one, angle: one.coupler_force_factor(angle),
+    lambda mechanism, angle: mechanism.coupler_force_factor(angle),
     lambda state: state.M_out,
     after="M_out",
 )
@@ -491,7 +493,7 @@ BLOCK_OFFERS = (
         "c_b",
         "velocity",
         "Sliding speed of the crank-pin block along its slot",
-        lambda one, angle: one.block_slope(angle),
+        lambda mechanism, angle: mechanism.block_slope(angle),
         omega=1,
     ),
     pin_force(lambda mechanism, angle: mechanism.pin_force_factor(angle)),
@@ -503,11 +505,11 @@ def pin_pressure(bound: float | None = None) -> KeyOffer:
     """Return the pressure between pin and block; bound: in Pa, up to which the sources let such a pin go."""
 
     def largest(mechanism: Any, forces: Any) -> Extreme | None:
-        found = None if mechanism.pin_diameter is None else forces.extremes_of("F_pin")
-        if not found:
+        force = None if mechanism.pin_diameter is None else forces.extremes_of("F_pin")
+        if not force:
             return None
         return Extreme(
-            found.peak.value / (mechanism.pin_diameter * mechanism.pin_length), found.peak.degrees
+            force.peak.value / (mechanism.pin_diameter * mechanism.pin_length), force.peak.degrees
         )
 
     text = "Largest pressure of the sliding block on the crank pin"

@@ -27,21 +27,21 @@ COUPLER_OFFERS = (
         "x_K",
         "length",
         f"Displacement {_POINT} along the frame",
-        lambda one, angle: -one.crank * angle.versine,
+        lambda mechanism, angle: -mechanism.crank * angle.versine,
     ),
     motion_column(
         "y_coupler",
         "y_K",
         "length",
         f"Displacement {_POINT} across the frame",
-        lambda one, angle: one.crank * angle.sin,
+        lambda mechanism, angle: mechanism.crank * angle.sin,
     ),
     motion_column(
         "bx_coupler",
         "b_Kx",
         "acceleration",
         f"Acceleration {_POINT} along the frame",
-        lambda one, angle: -one.crank * angle.cos,
+        lambda mechanism, angle: -mechanism.crank * angle.cos,
         omega=2,
     ),
     motion_column(
@@ -49,25 +49,25 @@ COUPLER_OFFERS = (
         "b_Ky",
         "acceleration",
         f"Acceleration {_POINT} across the frame",
-        lambda one, angle: -one.crank * angle.sin,
+        lambda mechanism, angle: -mechanism.crank * angle.sin,
         omega=2,
     ),
 )
 """How the coupler runs from φ = 0 on: with the speed v = Rω, accelerated by v²/R toward the centre (R ch. 14 A)."""
 
 
-def _acceleration(one: Any, results: Any) -> float | None:
+def _acceleration(mechanism: Any, results: Any) -> float | None:
     """Return v²/R = R ω² in m/s²; None without a speed."""
-    return None if results.omega is None else one.crank * results.omega * results.omega
+    return None if results.omega is None else mechanism.crank * results.omega * results.omega
 
 
-def _inertia(one: Any, results: Any) -> float | None:
+def _inertia(mechanism: Any, results: Any) -> float | None:
     """Return m R ω² in N; None without a speed or the mass of the coupler."""
-    acceleration = _acceleration(one, results)
+    acceleration = _acceleration(mechanism, results)
     return (
         None
-        if acceleration is None or one.coupler_mass is None
-        else one.coupler_mass * acceleration
+        if acceleration is None or mechanism.coupler_mass is None
+        else mechanism.coupler_mass * acceleration
     )
 
 

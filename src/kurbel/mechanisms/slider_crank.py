@@ -54,8 +54,12 @@ def _book(
 ) -> Offer:
     """Return the first-order approximation of a column; formula: for R = 1. With an offset the books have none."""
 
-    def factor(one: Any, angle: CrankAngle) -> Number | None:
-        return one.crank * formula(angle.sin, angle.cos, one.lam) if one.straight else None
+    def factor(mechanism: Any, angle: CrankAngle) -> Number | None:
+        return (
+            mechanism.crank * formula(angle.sin, angle.cos, mechanism.lam)
+            if mechanism.straight
+            else None
+        )
 
     return requested_column(
         f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", factor, id, omega
@@ -70,7 +74,7 @@ def _rod_turn(order: int) -> Offer:
         f"ψ{mark}",
         kind,
         text,
-        lambda one, angle: -one.coupler_at(angle)[order],
+        lambda mechanism, angle: -mechanism.coupler_at(angle)[order],
         "b",
         order,
     )
@@ -148,13 +152,13 @@ class SliderCrank(Mechanism):
     OFFERS = ROD_OFFERS
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
-        rod = given.get("rod") if given.get("rod") is not None else given.get("rod_ratio")
-        stroke, offset = given.get("stroke"), given.get("offset")
+    def rules_of_keys(cls, keys: ValuesByKey) -> Iterator[Rule]:
+        rod = keys.get("rod") if keys.get("rod") is not None else keys.get("rod_ratio")
+        stroke, offset = keys.get("stroke"), keys.get("offset")
         if not (stroke is None or offset is None or rod is None):
-            crank, known = _crank_of_stroke(given), stroke + offset + rod
+            crank, reach = _crank_of_stroke(keys), stroke + offset + rod
             remedy = "no crank has this stroke with {offset:length} and such a rod; give a longer one, or less offset"
-            yield Rule("offset", (crank != crank) & (known == known), remedy, given)
+            yield Rule("offset", (crank != crank) & (reach == reach), remedy, keys)
 
     def rules(self) -> Iterator[Rule]:
         crank, rod, offset = self.crank, self.rod, abs(self.offset)
@@ -327,13 +331,13 @@ class SliderCrank(Mechanism):
         From the triangle shaft, pin, crosshead by half angles, accurate near the dead centres. In closed form, since
         every point of a card over the stroke needs it, and a search takes fifty times as long.
         """
-        lam, passed, whole = self.lam, displacement / self.crank, self.stroke / self.crank
+        lam, passed, stroke = self.lam, displacement / self.crank, self.stroke / self.crank
         eps, (outer, inner) = self.offset / self.rod, self._reaches
         distance = outer - lam * passed  # of the crosshead from the foot of the shaft axis, over L
         line = np.hypot(distance, eps)
         # over λ: L + R − line, and line + R − L, from differences of squares
         before = passed * (2 * outer - lam * passed) / (1 + lam + line)
-        after = (whole - passed) * (distance + inner) / (line + 1 - lam)
+        after = (stroke - passed) * (distance + inner) / (line + 1 - lam)
         half = np.arctan2(np.sqrt(before * (1 + line - lam)), np.sqrt(after * (line + lam + 1)))
         lead, sweep = np.degrees(np.arctan2(eps, distance)), np.degrees(2 * half)
         return lead + sweep if outstroke else 360.0 + lead - sweep
@@ -361,13 +365,13 @@ def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
     )
 
 
-def _crank_of_stroke(given: ValuesByKey) -> Number:
+def _crank_of_stroke(keys: ValuesByKey) -> Number:
     """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR; nan where there is none."""
     half, rod, k, offset = (
-        given["stroke"] / 2,
-        given.get("rod"),
-        given.get("rod_ratio"),
-        given.get("offset") or 0.0,
+        keys["stroke"] / 2,
+        keys.get("rod"),
+        keys.get("rod_ratio"),
+        keys.get("offset") or 0.0,
     )
     length: Any = k if rod is None else rod
     straight = np.equal(offset, 0) | np.isinf(length)

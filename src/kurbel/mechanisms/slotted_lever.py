@@ -210,9 +210,9 @@ class SlottedLever(Mechanism):
         height = self._height / self._end - cos
         rise = height * short
         run = sqrt((1 - rise) * (1 + rise))
-        place = sin - height * rise / (1 + run)
+        x = sin - height * rise / (1 + run)
         return Ram(
-            place,
+            x,
             cos - sin * (rise / run),
             sin + cos * (rise / run) + sin * sin * short / (run * run * run),
         )
@@ -365,20 +365,20 @@ class SlottedLever(Mechanism):
     @property
     def notes(self) -> tuple[str, ...]:
         """Say that the lever turns fully, where it does, and that the pin slides past its end, where it does."""
-        found, farthest = [], self.frame + self.crank
+        sentences, farthest = [], self.frame + self.crank
         if self.rotates:
-            found.append(
+            sentences.append(
                 "The frame is shorter than the crank: the lever turns fully (Whitworth quick return)."
             )
         if self.turns:
-            found.append(
+            sentences.append(
                 "Without a lever's length the strokes are those of a ram square to the line of the pivots, on a fork "
                 "head."
             )
         # a lever that turns fully may drive its ram by an arm on the other side of the pivot
         if self.lever is not None and not self.rotates and self.lever < farthest:
-            found.append(
+            sentences.append(
                 f"The pin slides as far as {show(farthest, 'length')} from the lever's pivot, past its end at "
                 f"{show(self.lever, 'length')}: the slot must go on beyond the joint with the ram."
             )
-        return tuple(found)
+        return tuple(sentences)

@@ -166,7 +166,8 @@ def turning_stages(machine: Machine) -> dict[str, str]:
     # the speed
     if flywheel is not None and flywheel.fluctuation is not None:
         stages["J"] = no_power
-    stages["δ" if is_swing_alone else "speed line, δ"] = no_speed_line
+    speed_line = "δ" if is_swing_alone else "speed line, δ"
+    stages[speed_line] = no_speed_line
     if machine.load is not None and machine.load.diagram is None:
         stages["load over the speed"] = no_speed_line
     if machine.coupling:

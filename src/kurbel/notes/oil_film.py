@@ -1,4 +1,4 @@
-"""Warnings on oil films: thinner than those known to run well, too much pressure, and sizes that were not checked."""
+"""Warnings on oil films: too thin, under too much pressure, and of sizes that were not checked."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from kurbel.solver.chapters.bearings import Bearing
 from kurbel.solver.chapters.oil_film import FilmShape
 
 _THINNEST = {"crank_pin": 2.0e-6, "journals": 2.5e-6}
-"""Key -> the thinnest computed film in m that is known to run well (The Tribology Handbook, A11.4)."""
+"""Key -> the thinnest computed film in m that is known to run well (Tribology Handbook, A11.4)."""
 _WHITE_METAL = 14e6
 """Largest load over d l in Pa of tin white metal (The Tribology Handbook, A11.2)."""
 _CLEARANCES = (1 / 5000, 1 / 200)
@@ -20,7 +20,7 @@ _SLENDER = (1 / 8, 1.6)
 
 
 def film_warnings(case: Case) -> Iterator[str]:
-    """Yield what looks wrong in the oil films of a machine; of equal bearings the one with the thinnest film."""
+    """Yield what looks wrong in the oil films; of bearings with one key in the thinnest film."""
     films = case.machine.oil_film
     if films is None:
         return
@@ -44,8 +44,9 @@ def _of_equal_bearings(key: str, bearings: Sequence[Bearing], case: Case) -> Ite
     if thickness.value < _THINNEST.get(key, 0.0):
         yield (
             f"{thinnest.name}: the oil film of {show(thickness.value, 'film', 3)} at "
-            f"{thickness.degrees:.4g}° is thinner than any computed one that is known to run well (big ends 2 to "
-            "4 um, main bearings 2.5 to 4.2 um; The Tribology Handbook, A11.4: a guide for comparison, no proof)"
+            f"{thickness.degrees:.4g}° is thinner than any computed one that is known to run well "
+            "(big ends 2 to 4 um, main bearings 2.5 to 4.2 um; The Tribology Handbook, A11.4: "
+            "a guide for comparison, no proof)"
         )
     shaft = case.machine.crankshaft
     loaded = [bearing for bearing in bearings if bearing.pressure_max is not None]
@@ -56,8 +57,9 @@ def _of_equal_bearings(key: str, bearings: Sequence[Bearing], case: Case) -> Ite
     pressure = heaviest.pressure_max.value
     if pressure > _WHITE_METAL:
         yield (
-            f"{heaviest.name}: a load of {show(pressure, 'stress', 3)} over d l is more than the guidance limit of tin "
-            "white metal, 12 to 14 N/mm^2, of linings up to 0.1 mm 14 to 17 (The Tribology Handbook, A11.2)"
+            f"{heaviest.name}: a load of {show(pressure, 'stress', 3)} over d l is more than the "
+            "guidance limit of tin white metal, 12 to 14 N/mm^2, of linings up to 0.1 mm 14 to 17 "
+            "(The Tribology Handbook, A11.2)"
         )
 
 
@@ -68,12 +70,12 @@ def _of_shape(key: str, shape: FilmShape) -> Iterator[str]:
     if not narrow <= relative <= wide:
         yield (
             f"{key}: a radial clearance of {show(shape.clearance, 'length', 3)} makes 2c/D = "
-            f"1/{1 / relative:.0f}; usual is about 1/1000 (MAHLE: 0.001 in per inch): is it the diametral one, or "
-            "another unit?"
+            f"1/{1 / relative:.0f}; usual is about 1/1000 (MAHLE: 0.001 in per inch): is it the "
+            "diametral one, or another unit?"
         )
     short, long = _SLENDER
     if not short <= shape.lam <= long:
         yield (
-            f"{key}: L/D = {shape.lam:.3g} of a land is not within 1/8 to 1.6, where oil films were "
-            "compared with Reynolds' equation"
+            f"{key}: L/D = {shape.lam:.3g} of a land is not within 1/8 to 1.6, where oil films "
+            "were compared with Reynolds' equation"
         )

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from kurbel.checks.limits import CheckEntry, compared_entries, name_of
+from kurbel.checks.limits import CheckEntry, compared_entries, margin_text, margins, name_of
 from kurbel.declared.unit_systems import convert, show, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
@@ -321,10 +321,19 @@ def limit_verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[SectionIt
             fails = entry.severity == "error"
             rows.append(_verdict_row(entry, "FAIL" if fails else "PASS"))
             marks.append("bad" if fails else "good")
+    table = margins(entries)
+    load_cases = list(dict.fromkeys(case for of_limit in table.values() for case in of_limit))
     if rows:
         # in this order: a narrow window shows the first columns
         heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"
         yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
+    if load_cases:
+        margin_heads = ("Limit", *(name or case.machine.name for name in load_cases))
+        lines = []
+        for limit, of_limit in table.items():
+            lines.append((limit, *(margin_text(of_limit.get(name)) for name in load_cases)))
+        numbers = tuple(range(1, len(margin_heads)))
+        yield Grid("Margins to the limits", margin_heads, tuple(lines), numbers=numbers)
     for entry in entries:
         if entry.error:
             yield Notice(str(entry.error), "bad")

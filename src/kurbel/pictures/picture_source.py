@@ -196,9 +196,9 @@ class Source:
             self.mark(name, extreme, place(extreme.degrees)) for name, extreme in extremes.items()
         )
 
-    def mark(self, id: str, extreme: Extreme, place: float | complex) -> Mark:
+    def mark(self, id: str, extreme: Extreme, spot: float | complex) -> Mark:
         """Return an extreme, which is the key value of this id, at x, with its value for y, or at a point x + iy."""
-        point = place if isinstance(place, complex) else complex(place, extreme.value)
+        point = spot if isinstance(spot, complex) else complex(spot, extreme.value)
         figure = PageFigure(self.words(id), extreme.value, at_deg=extreme.degrees)
         return Mark(point.real, point.imag, figure)
 

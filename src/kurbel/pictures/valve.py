@@ -113,8 +113,8 @@ def valve_ellipse(source: Source) -> Iterator[Panel]:
         curves.append(level(x, -sign * end.exhaust_lap, Words(f"{'' if minus else '−'}E_{index}")))
         angles = [(degrees + end.dead_centre) % 360.0 for degrees in end.events]
         across, up = source.values([source.line("x"), source.line("valve")], angles)
-        places = across + 1j * up
-        marks += _event_marks(end, places.tolist(), angles)
+        points = across + 1j * up
+        marks += _event_marks(end, points.tolist(), angles)
     yield panel._replace(curves=tuple(curves), marks=tuple(marks))
 
 
@@ -132,15 +132,15 @@ def _panel(end: ValveEnd, curves: list[Curve], marks: list[Mark]) -> Panel:
 
 
 def _event_marks(
-    end: ValveEnd, places: list[complex], angles: list[float] | None = None
+    end: ValveEnd, points: list[complex], angles: list[float] | None = None
 ) -> Iterator[Mark]:
     """Yield the events of an end with their angles, by default from its own dead centre."""
-    for event, place, degrees in zip(end.events._fields, places, angles or end.events):
+    for event, point, degrees in zip(end.events._fields, points, angles or end.events):
         yield Mark(
-            place.real, place.imag, PageFigure(Words(event.replace("_", "-")), at_deg=degrees)
+            point.real, point.imag, PageFigure(Words(event.replace("_", "-")), at_deg=degrees)
         )
 
 
-def _letter(letter: str, place: complex, length: float | None = None) -> Mark:
+def _letter(letter: str, point: complex, length: float | None = None) -> Mark:
     """Return a point with its letter, and the length that it stands for."""
-    return Mark(place.real, place.imag, PageFigure(Words(letter), length))
+    return Mark(point.real, point.imag, PageFigure(Words(letter), length))

@@ -36,7 +36,7 @@ def check_file(file_name: str, option: str = "--output", poster: bool = False) -
         remedy = "" if poster else "; svg needs no package"
         raise UsageError(
             f"{option} {file_name}: a {what} needs typst, which is not installed: "
-            f"pip install 'kurbel[plot]'{remedy}"
+            f"pip install typst{remedy}"
         )
     return kind
 

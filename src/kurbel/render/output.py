@@ -100,8 +100,14 @@ def _stdout() -> TextIO:
 
 
 def write_lines(lines: "Iterable[Line]", look: Look) -> None:
-    """Write lines to standard output, in colour on a terminal unless colours are not wanted."""
-    if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+    """Write lines to standard output, in colour on a terminal unless colours are not wanted.
+
+    NO_COLOR forbids colours, FORCE_COLOR has them in a pipe, too, as in the log of a CI service.
+    """
+    forbidden = bool(os.environ.get("NO_COLOR")) or os.environ.get("TERM") == "dumb"
+    forced = os.environ.get("FORCE_COLOR", "") not in ("", "0")
+    is_coloured = not forbidden and (forced or _stdout().isatty())
+    if not is_coloured:
         from kurbel.render.text import plain_lines
 
         write_out(plain_lines(lines), None, look.encoding)

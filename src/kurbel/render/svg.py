@@ -121,9 +121,9 @@ def _drawn(picture: Picture, look: Look, paper: bool, headed: bool = True) -> tu
     # what the marks mean, four in a line
     for number, (name, mark) in enumerate(picture.legend):
         line, place_in_line = divmod(number, 4)
-        place = complex(12 + place_in_line * (WIDTH - 12) / 4, bottom + 18 + 16 * line)
-        items += _shape(f"c{mark % LOOKS}", _dot(place - 4j, mark))
-        items += _text(place + 9, symbol(name, look))
+        spot = complex(12 + place_in_line * (WIDTH - 12) / 4, bottom + 18 + 16 * line)
+        items += _shape(f"c{mark % LOOKS}", _dot(spot - 4j, mark))
+        items += _text(spot + 9, symbol(name, look))
     height = bottom + 4
     if picture.legend:
         lines = math.ceil(len(picture.legend) / 4)
@@ -198,9 +198,9 @@ def _panel(
     for label in labels:
         yield _text(complex(max(label.left, leftmost), label.top + 9.5), label.text, "halo")
     for caption in panel.captions:
-        place = complex(frame.place(caption.place.real, caption.place.imag)) + 4.5j
+        spot = complex(frame.place(caption.place.real, caption.place.imag)) + 4.5j
         caption_look = "mark strong" if caption.strong else "mark note"
-        yield _text(place, look.text(caption.text), caption_look, "middle")
+        yield _text(spot, look.text(caption.text), caption_look, "middle")
     if panel.footnote:
         yield from _below(frame)
 
@@ -415,24 +415,24 @@ def _arrow(frame: PanelFrame, moments: Sequence[Curve]) -> str:
     return arrow + _text(name_places[0], name, name_look, "middle", name_places)
 
 
-def thinned(places: ComplexArray) -> ComplexArray:
+def thinned(points: ComplexArray) -> ComplexArray:
     """Return places x + iy (n,) without those that are on a straight line between their neighbours."""
     # of neighbours every other one, the odd and the even ones in turn
     for parity in (0, 1) * 6:
-        if len(places) < 3:
+        if len(points) < 3:
             break
-        offset = places[1:-1] - places[:-2]
-        chord = places[2:] - places[:-2]
+        offset = points[1:-1] - points[:-2]
+        chord = points[2:] - points[:-2]
         share = (offset * chord.conj()).real / np.maximum(np.abs(chord) ** 2, 1e-12)
         distance = np.abs(offset - np.clip(share, 0.0, 1.0) * chord)
         stays = distance > _STRAIGHT
         stays[parity::2] = True
-        places = places[np.concatenate(([True], stays, [True]))]
-    return places
+        points = points[np.concatenate(([True], stays, [True]))]
+    return points
 
 
-def _path(places: ComplexArray) -> str:
-    rounded = np.round(places, 1)
+def _path(points: ComplexArray) -> str:
+    rounded = np.round(points, 1)
     # one call for all steps: one for each point would take long
     steps = (np.round(np.diff(rounded), 1) + 0.0).tolist()
     start = f"M{_both(rounded[0])}"
@@ -461,7 +461,7 @@ def _shape(look: str, *paths: str) -> str:
 
 
 def _text(
-    place: complex, text: str, look: str = "", anchor: str = "", loop: Sequence[complex] = ()
+    point: complex, text: str, look: str = "", anchor: str = "", loop: Sequence[complex] = ()
 ) -> str:
     """Return a text with its subscripts; loop: the places through which it moves."""
     first, *following = subscripts(text)
@@ -476,7 +476,7 @@ def _text(
     attributes = f' class="{look}"' if look else ""
     if anchor:
         attributes += f' text-anchor="{anchor}"'
-    attributes += f' x="{_number(place.real)}" y="{_number(place.imag)}"'
+    attributes += f' x="{_number(point.real)}" y="{_number(point.imag)}"'
     return f"<text{attributes}>{words}{animation}</text>\n"
 
 
@@ -490,8 +490,8 @@ def _animated(what: str, values: Sequence[str], last: str = "") -> str:
     return f'<animate{what} dur="{seconds:g}s" repeatCount="indefinite" values="{around}"/>'
 
 
-def _both(place: complex) -> str:
-    return f"{_number(place.real)} {_number(place.imag)}"
+def _both(point: complex) -> str:
+    return f"{_number(point.real)} {_number(point.imag)}"
 
 
 def _number(value: float, decimals: int = 1) -> str:

@@ -207,7 +207,7 @@ def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design]) -> No
     try:
         import pyarrow.parquet
     except ImportError:
-        raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
+        raise UsageError("Parquet needs pyarrow: pip install pyarrow") from None
     stored_types = {
         "number": pyarrow.float64(),
         "text": pyarrow.string(),

@@ -8,7 +8,8 @@ from kurbel.notes.left_out import (
     bearings_left_out,
     film_left_out,
 )
-from kurbel.notes.warnings import as_far_as_solved, bearing_warnings, of_machine, rods_on_pin
+from kurbel.notes.machine_results import bearing_warnings, rods_on_pin
+from kurbel.notes.warnings import as_far_as_solved, of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.bearings import Bearing
 from kurbel.tables.frame import Functions, Subject
@@ -18,7 +19,7 @@ from kurbel.tables.tables import together
 def _film_warnings(case: Case) -> Iterator[str]:
     from kurbel.notes.oil_film import film_warnings
 
-    return film_warnings(case)
+    yield from film_warnings(case)  # imported only where warnings are printed
 
 
 def _loaded(case: Case) -> list[Subject]:
@@ -64,8 +65,8 @@ def _bearing_notes(case: Case) -> Iterator[str]:
     if machine.oil_film:
         yield (
             "Oil film by the mobility method: rigid and aligned surfaces, constant viscosity, a clearance that is "
-            "always full of oil. Films of real bearings are thinner; compare designs by it. ε_h from the rod's line, "
-            "of a main bearing from the stroke line of cylinder 1."
+            "always full of oil. Films of real bearings are thinner and their pressures lower: compare designs by them. "
+            "ε_h counts from the rod's line, of a main bearing from the stroke line of cylinder 1."
         )
     if len(machine.cylinders) > 1:
         yield "φ is the angle of crank 1."

@@ -276,10 +276,11 @@ _ROWS = (
     Command(
         "check", "Read and check a machine file and its limits.", statuses=(BROKEN, NO_SOLUTION)
     ),
-    Command("example", "List the shipped machines, or print one."),
+    Command("example", "List the shipped machines, or print one.", statuses=(BROKEN,)),
     Command("keys", "The keys of the machine file, or one of them in full."),
     Command("units", "The units of every kind of quantity."),
     Command("schema", "JSON Schema of the machine file, or of the JSON output."),
+    Command("skill", "What to know before first use, on one page."),
 )
 COMMANDS = {row.word: row for row in _ROWS}
 """By its word, in the order in which `kurbel --help` lists them."""

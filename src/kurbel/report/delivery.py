@@ -8,7 +8,8 @@ from kurbel.notes.left_out import missing
 from kurbel.notes.warnings import of_machine
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.delivery import CompressorStage, MachineDelivery
+from kurbel.solver.chapters.compressors import CompressorStage
+from kurbel.solver.chapters.delivery import MachineDelivery
 from kurbel.tables.frame import Functions, Subject
 from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut

@@ -3,11 +3,22 @@
 from collections.abc import Iterator
 
 from kurbel.declared.unit_systems import show
-from kurbel.notes.left_out import flywheel_left_out
-from kurbel.notes.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import DeadCentre
 from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.tables import LeftOut
+
+
+def _left_out(case: Case) -> Iterator[LeftOut]:
+    from kurbel.notes.left_out import flywheel_left_out
+
+    yield from flywheel_left_out(case.machine)
+
+
+def _warnings(case: Case) -> Iterator[str]:
+    from kurbel.notes.warnings import of_machine
+
+    yield from of_machine(case)
 
 
 def _turned(case: Case) -> list[Subject]:
@@ -20,8 +31,8 @@ def _turned(case: Case) -> list[Subject]:
         "whole machine",
         turning,
         turning.at if effort.swing is None else None,
-        left_out=flywheel_left_out(case.machine),
-        warnings=of_machine(case),
+        left_out=_left_out(case),
+        warnings=_warnings(case),
         whole=True,
     )
     return [*subjects, whole]

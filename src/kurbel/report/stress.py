@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from itertools import chain
 
 from kurbel.notes.left_out import left_out, strength_left_out
-from kurbel.notes.warnings import of_machine, rods_on_pin, shells
+from kurbel.notes.machine_results import rods_on_pin, shells
+from kurbel.notes.warnings import of_machine
 from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.stress import CrankshaftStrength, ThrowStrength
@@ -58,7 +59,7 @@ def _stressed(case: Case) -> list[Subject]:
     else:
         at = strength.at
         tables = _stress_tables(strength.only)
-    whole = Subject(
+    crankshaft = Subject(
         "crankshaft",
         strength,
         at,
@@ -69,7 +70,7 @@ def _stressed(case: Case) -> list[Subject]:
         tables=tables,
         whole=True,
     )
-    return [*parts, whole]
+    return [*parts, crankshaft]
 
 
 def _stress_tables(throw: ThrowStrength, called: str = "") -> Iterator[Places]:

@@ -21,7 +21,8 @@ from kurbel.solver.forces import CylinderForces
 if TYPE_CHECKING:
     from kurbel.solver.chapters.balance import MachineBalance
     from kurbel.solver.chapters.bearings import Bearing, ShaftBearings
-    from kurbel.solver.chapters.delivery import CompressorStage, Delivery, MachineDelivery
+    from kurbel.solver.chapters.compressors import CompressorStage
+    from kurbel.solver.chapters.delivery import Delivery, MachineDelivery
     from kurbel.solver.chapters.harmonics import MachineOrders
     from kurbel.solver.chapters.stress import CrankshaftStrength
     from kurbel.solver.chapters.torsion import ShaftVibration
@@ -212,7 +213,7 @@ def _pump() -> type[Delivery]:
 
 
 def _stage() -> type[CompressorStage]:
-    from kurbel.solver.chapters.delivery import CompressorStage
+    from kurbel.solver.chapters.compressors import CompressorStage
 
     return CompressorStage
 

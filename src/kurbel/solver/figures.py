@@ -327,16 +327,16 @@ class Results(NotebookView):
         """
         angles = np.atleast_1d(crank_angles(degrees))
         state = self.at(angles)
-        known = self._own_columns
-        rows = [_only(name, known, "column") for name in names] if names else known.values()
-        found: dict[str, Array] = {"phi": angles}
+        declared = self._own_columns
+        rows = [_only(name, declared, "column") for name in names] if names else declared.values()
+        arrays: dict[str, Array] = {"phi": angles}
         for row in rows:
             values = angles if row.quantity.id == "phi" else row.of(state)
             if values is not None:
-                found[row.quantity.id] = np.asarray(values, float)
+                arrays[row.quantity.id] = np.asarray(values, float)
             elif names:
                 raise UsageError(f"this machine has no {row.quantity.id}: {row.quantity.text}")
-        return found
+        return arrays
 
     @cached_property
     def _own_columns(self) -> dict[str, QuantityRow]:
@@ -403,39 +403,38 @@ def result_rows(
     if (kind, offers, key_offers, closed) in _ROWS:
         return _ROWS[kind, offers, key_offers, closed]
     columns = column_rows(kind.state, offers) if kind.state else {}
-    quantities = [row.quantity for row in columns.values()] or [one.quantity for one in offers]
+    quantities = [row.quantity for row in columns.values()]
+    if not quantities:
+        quantities = [offer.quantity for offer in offers]
+    # its own definitions and inherited ones, in the order in which each was defined first
     definitions: dict[str, object] = {}
-    for one in reversed(
-        kind.__mro__
-    ):  # its own and inherited ones, in the order in which each was defined first
-        definitions |= vars(one)
-    found, heading = list[QuantityRow](), ""
-    for item in (
-        *definitions.values(),
-        ExtremesOfColumns(),
-    ):  # of rows with one id the first counts
+    for owner in reversed(kind.__mro__):
+        definitions |= vars(owner)
+
+    # of rows with one id the first counts
+    rows_in_order = list[QuantityRow]()
+    heading = ""
+    for item in (*definitions.values(), ExtremesOfColumns()):
         rows: Iterable[QuantityRow] = ()
         if isinstance(item, Heading):
             heading = item.text
-        elif isinstance(item, PartResults) and item.name in closed:
-            rows = ()
         elif isinstance(item, PartResults):
-            rows = item.of_whole(result_rows(item.kind, offers, key_offers).key_values.values())
+            if item.name not in closed:
+                key_values = result_rows(item.kind, offers, key_offers).key_values
+                rows = item.of_whole(key_values.values())
         elif isinstance(item, ExtremesOfColumns):
-            rows = item.rows(
-                [quantity for quantity in quantities if kind.command in quantity.extremes]
-            )
+            searched = [quantity for quantity in quantities if kind.command in quantity.extremes]
+            rows = item.rows(searched)
         elif isinstance(item, (Computed, ForEach)):
             rows = item.rows
-        found += [
-            one._replace(quantity=one.quantity.printed_by(kind.command, heading)) for one in rows
-        ]
+        for row in rows:
+            printed = row.quantity.printed_by(kind.command, heading)
+            rows_in_order.append(row._replace(quantity=printed))
     for offer in key_offers:
         if kind.command in offer.quantity.commands:
-            found.append(QuantityRow(offer.quantity.printed_by(kind.command), offer.of))
-    return _ROWS.setdefault(
-        (kind, offers, key_offers, closed), Rows(columns, _in_order(found, kind))
-    )
+            rows_in_order.append(QuantityRow(offer.quantity.printed_by(kind.command), offer.of))
+    rows_of_kind = Rows(columns, _in_order(rows_in_order, kind))
+    return _ROWS.setdefault((kind, offers, key_offers, closed), rows_of_kind)
 
 
 def result(values: Array, count: int | None) -> Any:
@@ -456,17 +455,17 @@ def crank_angles(degrees: object) -> Array:
     return angles
 
 
-def _only(name: str, known: Mapping[str, QuantityRow], what: str) -> QuantityRow:
+def _only(name: str, rows: Mapping[str, QuantityRow], what: str) -> QuantityRow:
     """Return the one row that a name means, its id first; raises UsageError for none and for several."""
-    if name in known:
-        return known[name]
-    found = called(name, (row.quantity for row in known.values()))
-    if len(found) != 1:
+    if name in rows:
+        return rows[name]
+    ids = called(name, (row.quantity for row in rows.values()))
+    if len(ids) != 1:
         raise UsageError(
-            ambiguity(name, found)
-            or f"no {what} '{text_in_one_line(name)}'{did_you_mean(name, tuple(known))}"
+            ambiguity(name, ids)
+            or f"no {what} '{text_in_one_line(name)}'{did_you_mean(name, tuple(rows))}"
         )
-    return known[found[0]]
+    return rows[ids[0]]
 
 
 def _figure(quantity: Quantity, value: object) -> Figure:

@@ -63,18 +63,15 @@ def residual(cylinder: SampledCylinder) -> float | None:
     drive, mechanism = cylinder.drive, cylinder.drive.mechanism
     if drive.links or drive.cylinder.link_rod is not None:
         return None
-    if (
-        not drive.has_force
-        or drive.count is not None
-        or not (mechanism.has_rod and mechanism.slides)
-    ):
+    is_slider_crank = mechanism.has_rod and bool(mechanism.slides)
+    if not drive.has_force or drive.count is not None or not is_slider_crank:
         return None
     state = State.at(drive, _ANGLES * drive.cycle)
-    sizes = [
-        np.abs(one).max()
-        for one in map(cylinder.sampled, ("P", "N", "D", "T", "S"))
-        if one is not None
-    ]
+    sizes = []
+    for column in ("P", "N", "D", "T", "S"):
+        values = cylinder.sampled(column)
+        if values is not None:
+            sizes.append(np.abs(values).max())
     if not any(sizes):
         return 0.0
     motion = _motion_of(state) if math.isfinite(mechanism.rod_length) else None
@@ -84,13 +81,15 @@ def residual(cylinder: SampledCylinder) -> float | None:
 
     # piston, rod and crosshead, toward the shaft: gas + weight − friction − rod − m z̈
     parts = drive.cylinder.masses.parts if drive.cylinder.masses else 0.0
-    given = sum(one for one in (state.P_gas, state.P_ram) if one is not None)
+    gas_and_ram = sum(force for force in (state.P_gas, state.P_ram) if force is not None)
     side = 0.0 if state.N is None else np.abs(state.N)
     rubs = state.direction * (state.steady_friction + drive.crosshead_friction * side)
-    push, moved = state.along_rod, -mechanism.crank * state.angle.cos
+    push = state.along_rod
+    moved = -mechanism.crank * state.angle.cos
     if motion:
-        push, moved = on_crosshead_pin(state).D, motion.crosshead.real
-    left = [given - gravity.real * parts - rubs - push + parts * moved * square]
+        push = on_crosshead_pin(state).D
+        moved = motion.crosshead.real
+    left = [gas_and_ram - gravity.real * parts - rubs - push + parts * moved * square]
     # the shaft: T R less the moments in crank pin and journals less M, over R
     lost = state.rubbing.at_crank + state.rubbing.journals if state.rubbing else 0.0
     left.append(state.tangential_at_pin - (lost + state.M) / mechanism.crank)
@@ -99,7 +98,8 @@ def residual(cylinder: SampledCylinder) -> float | None:
         rod = _rod_of(drive)
         left += _of_rod(rod, state, motion, gravity, square)
         energy = _energy(rod, state, motion)
-    return max(cylinder.tail, energy, *(float(np.abs(one).max() / max(sizes)) for one in left))
+    residuals = [float(np.abs(force).max() / max(sizes)) for force in left]
+    return max(cylinder.tail, energy, *residuals)
 
 
 def _rod_of(drive: Drive) -> _Rod:

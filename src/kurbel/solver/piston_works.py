@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from kurbel.arrays import Number
 from kurbel.machine import Machine
 from kurbel.numerics.arithmetic import every, total, where
 from kurbel.quantity import value
+from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results
 from kurbel.solver.gas import PistonGas
 
-if TYPE_CHECKING:
-    from kurbel.solver.forces import CylinderForces
+
+class PoweredCylinder(Protocol):
+    """A cylinder with its indicated power in W, None without one."""
+
+    drive: Drive
+
+    @property
+    def power(self) -> Any:
+        """Its indicated power."""
 
 
 class Brake(Results):
@@ -31,7 +39,7 @@ class Brake(Results):
     mean_pressure_friction = value("p_r", "pressure", "Friction mean effective pressure, p_i − p_e")
     eta_m = value("η_m", "ratio", "Mechanical efficiency: brake power over indicated power")
 
-    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
+    def __init__(self, machine: Machine, cylinders: Sequence[PoweredCylinder]) -> None:
         self.machine, self.cylinders = machine, cylinders
         self.indicated: Any = _sum_of_all([cylinder.power for cylinder in cylinders])
 

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from kurbel.errors import refused
 from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.pieces import Angles, Pieces, refined
 from kurbel.traces.period import Clock
+
+if TYPE_CHECKING:
+    from kurbel.traces.heat import HeatLaw
 
 _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
@@ -58,7 +61,7 @@ class Trace(Indivisible):
     known, as a text at the dead centre where the compression begins, the ambient; against: the file counts its angles
     against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the figures of the
     file were multiplied by; clock: how times became its angles; suction, discharge: pressures in
-    Pa in the lines of a compressor, where they are known.
+    Pa in the lines of a compressor, where they are known; heat: by what its heat release is computed.
     Raises RuleError for samples that are no such cycle.
     """
 
@@ -77,6 +80,7 @@ class Trace(Indivisible):
     clock: Clock | None = None
     suction: float | None = None
     discharge: float | None = None
+    heat: "HeatLaw | None" = None
     burns: ClassVar[bool] = False
     by_steam: ClassVar[bool] = False
     compresses: ClassVar[bool] = False
@@ -401,7 +405,8 @@ def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
 # the straight lines between the samples. Otherwise the integral of those straight lines, by a rule exact to rounding.
 
 _DENSE = 600
-"""Number of breaks in a cycle above which its pieces are short enough for few nodes."""
+_DENSEST = 20_000
+"""Numbers of breaks in a cycle above which its pieces are short enough for few nodes, and for the fewest."""
 
 
 def by_angle(setting: Setting, derivative: Callable[[CrankAngle], Number], degrees: Array) -> Array:
@@ -430,7 +435,11 @@ def by_straight_lines(
     cycle = float(along[-1])
     turns = np.add.outer(setting.mechanism.dead_centres(), np.arange(0.0, cycle, 360.0)).ravel()
     breaks = np.append(along, turns - angles[0])
-    nodes = 16 if len(breaks) < _DENSE else 10
+    nodes = 16
+    if len(breaks) > _DENSE:
+        nodes = 10
+    if len(breaks) > _DENSEST:
+        nodes = 4
     whole = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
     pieces, (slopes,) = refined(
         whole, lambda some: by_angle(setting, slope, some.degrees + angles[0])[None]

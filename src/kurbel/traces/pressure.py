@@ -119,7 +119,7 @@ class TracePressure:
         """Weights (n,) of the samples in ∮ p dz over the stroke fraction z."""
         return work_weights(self.setting, self.angles)
 
-    @property
+    @cached_property
     def exchange_weights(self) -> Array | None:
         """Weights (n,) of the samples in ∫ p dz over exhaust and intake, along straight lines; None in two strokes."""
         if self.setting.cycle == 360:

@@ -252,7 +252,8 @@ def key_places(
         return
     for name, inner in form.parts:
         if isinstance(inner, Inline):
-            yield from key_places(inner, path, inner.item if inner.unless else words)
+            inner_words = inner.item if inner.unless else words
+            yield from key_places(inner, path, inner_words)
             continue
         if not name:
             yield from key_places(inner, path, words)
@@ -341,20 +342,23 @@ class Listing(Form):
 
     def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
         """Return items with the keys that `like` copies; an error in a copied key is reported once, at the original."""
-        above: dict[str, int] = {}
+        above: dict[str, int] = {}  # names of the items so far, with their indices
         completed: list[Any] = list(items)
         for index, item in enumerate(items):
             if not isinstance(item, dict):
                 continue
+            # the keys that it copies
             if "like" in item:
                 here: Path = (*path, index)
-                original = str(item["like"])
-                if original not in above:
-                    message = self._none_above(original, tuple(above))
+                original_name = str(item["like"])
+                if original_name not in above:
+                    message = self._none_above(original_name, tuple(above))
                     completed[index] = reading.fault((*here, "like"), message)
                     continue
-                reading.alike[here] = (*path, above[original])
-                completed[index] = self._copy(completed[above[original]], item)
+                original = above[original_name]
+                reading.alike[here] = (*path, original)
+                completed[index] = self._copy(completed[original], item)
+            # its name, by which later items may copy it
             name = completed[index].get("name")
             if not isinstance(name, str):
                 name = f"{self.called} {index + 1}"

@@ -162,17 +162,18 @@ def order_faults(points: Sequence[DiagramPoint], format: str) -> list[Fault]:
     """
     rises = points[0][0] <= points[-1][0]
     for index in range(1, len(points)):
-        before = points[index - 1]
         point = points[index]
+        before = points[index - 1]
         turns_back = point[0] != before[0] and (point[0] > before[0]) != rises
         if turns_back:
             where = f"{format.format(point[0])} after {before[0]:g}"
             return [Fault((index,), f"{where}: the line turns back")]
         if index == 1:
             continue
-        first = points[index - 2]
-        is_third_value = first[0] == point[0] and first != before and before != point
-        if is_third_value:
+        # three different points at one abscissa
+        two_before = points[index - 2]
+        is_same_abscissa = two_before[0] == point[0]
+        if is_same_abscissa and two_before != before and before != point:
             where = format.format(point[0])
             return [Fault((index,), f"three points at {where}; a jump has two")]
     return []
@@ -474,7 +475,9 @@ class Points(Form):
         self._pattern = f"[{', '.join(names)}]"
         sample = "[[0, 1], [1, 2]]" if length == 2 else "[[1, 20, -5]]"
         # the schema
-        number: Schema = {"type": ["number", "string"] if ratio else "number"}
+        number: Schema = {"type": "number"}
+        if ratio:
+            number["type"] = ["number", "string"]
         point = {"type": "array", "items": number, "minItems": length, "maxItems": length}
         schema = {"type": "array", "items": point, "minItems": least, "maxItems": MOST_POINTS}
         expected = f"a list of {self._called}s [{self._pattern}, …]"

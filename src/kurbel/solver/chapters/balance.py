@@ -638,9 +638,9 @@ class MachineBalance(Results):
             return counterweights.planes
         if self.wheels:
             return self.wheels
-        places = [throw.place for throw in self.throws if throw.place is not None]
-        if places and min(places) < max(places):
-            return min(places), max(places)
+        positions = [throw.place for throw in self.throws if throw.place is not None]
+        if positions and min(positions) < max(positions):
+            return min(positions), max(positions)
         return ()
 
     def _in_planes(self, order: int) -> tuple[Weight, ...]:
@@ -685,10 +685,10 @@ class MachineBalance(Results):
             if moment and not has_place and self.planes:
                 weights += self._in_planes(order)
             elif force:
-                place: Number | None = None
+                position: Number | None = None
                 if has_place and self.z_0 is not None:
-                    place = self.z_0 + lever.real
-                weights.append(Weight(-force / order**2, order, place))
+                    position = self.z_0 + lever.real
+                weights.append(Weight(-force / order**2, order, position))
         return tuple(weights)
 
     # the wheels of a locomotive

@@ -91,7 +91,6 @@ class BearingColumns(AtAngles):
         "Direction of the load from *",
         of=lambda columns, frame: columns.direction(frame),
     )
-
     eccentricity = value(
         "e_r",
         "ratio",
@@ -172,18 +171,6 @@ class Bearing(Results):
         "A_f,L", "energy", "Friction work per cycle", lambda bearing: bearing.friction_work()
     )
 
-    @part(_oil_film, there=lambda bearing: bearing.oil is not None)
-    def film(self) -> OilFilm | None:
-        """Its oil film; None where it has none, or something that it needs is not given."""
-        films = self.machine.oil_film
-        if films is None or self.oil is None or self._film_lacks:
-            return None
-        shape = _oil_film().shape_of(films, self.key, *self.size)
-        pieces, _, loads = self._cycle
-        turning = pieces.carried(self._turning(), self._common)
-        pressed = self._pressing(loads[1])
-        return _oil_film()(shape, pieces, pressed, turning, self.omega, self.count)
-
     def __init__(
         self,
         name: str,
@@ -235,9 +222,23 @@ class Bearing(Results):
         film = self.film.at_angles(phi, pressed) if self.film else None
         return BearingColumns(phi, frames, largest, film)
 
+    # its oil film
+
     def _pressing(self, load: ComplexArray) -> ComplexArray:
         """Return a load seen from the shell, turned to where it presses pin and shell together."""
         return load * math.cos(math.radians(self.contact))
+
+    @part(_oil_film, there=lambda bearing: bearing.oil is not None)
+    def film(self) -> OilFilm | None:
+        """Its oil film; None where it has none, or something that it needs is not given."""
+        films = self.machine.oil_film
+        if films is None or self.oil is None or self._film_lacks:
+            return None
+        shape = _oil_film().shape_of(films, self.key, *self.size)
+        pieces, _, loads = self._cycle
+        turning = pieces.carried(self._turning(), self._common)
+        pressed = self._pressing(loads[1])
+        return _oil_film()(shape, pieces, pressed, turning, self.omega, self.count)
 
     @property
     def _film_lacks(self) -> str:

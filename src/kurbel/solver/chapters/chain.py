@@ -182,7 +182,7 @@ def _angles(
     becomes s θ − t/k, s = 1 − r/k, and the torque (r/s) θ′ + t/s. Then the angles follow from the root outward.
     """
     fixed = chain.fixed_segments
-    tree = Tree(chain, fixed[-1] if fixed else None)
+    tree = ShaftTree(chain, fixed[-1] if fixed else None)
     by_angle, free = -of_masses, sides.astype(complex)
     ratios = np.ones(free.shape, complex)
     for mass in tree.leaves_first:
@@ -247,7 +247,7 @@ def loss(chain: Chain, frequencies: Array, angles: ComplexArray) -> Array:
 # the tree of the masses
 
 
-class Link(NamedTuple):
+class RootwardSegment(NamedTuple):
     """The segment from a mass to the one next to it toward the root, or to the ground there.
 
     onward: whether the mass is before the segment, so that the torque toward the root is T.
@@ -258,7 +258,7 @@ class Link(NamedTuple):
     onward: bool
 
 
-class Tree:
+class ShaftTree:
     """The masses of a chain as seen from a root: its fixed end, or its last mass.
 
     links: of each mass toward the root, None of a root that is a mass; leaves_first: the masses, each before its
@@ -267,15 +267,15 @@ class Tree:
 
     def __init__(self, chain: Chain, root_segment: int | None) -> None:
         count = len(chain.inertias)
-        self.links: list[Link | None] = [None] * count
+        self.links: list[RootwardSegment | None] = [None] * count
         self.children: list[list[int]] = [[] for _ in range(count)]
         self.fixed: list[list[int]] = [[] for _ in range(count)]
-        neighbours: list[list[Link]] = [[] for _ in range(count)]
+        neighbours: list[list[RootwardSegment]] = [[] for _ in range(count)]
         for segment, (before, behind) in enumerate(chain.joins):
             if before != GROUNDED:
-                neighbours[before].append(Link(segment, behind, True))
+                neighbours[before].append(RootwardSegment(segment, behind, True))
             if behind != GROUNDED:
-                neighbours[behind].append(Link(segment, before, False))
+                neighbours[behind].append(RootwardSegment(segment, before, False))
 
         # from the root outward
         root = count - 1
@@ -294,12 +294,12 @@ class Tree:
                 if other == GROUNDED:
                     self.fixed[mass].append(segment)
                     continue
-                self.links[other] = Link(segment, mass, not onward)
+                self.links[other] = RootwardSegment(segment, mass, not onward)
                 self.children[mass].append(other)
                 outward.append(other)
         self.leaves_first = outward[::-1]
 
-    def path_to_root(self, mass: int) -> Iterator[tuple[int, Link | None]]:
+    def path_to_root(self, mass: int) -> Iterator[tuple[int, RootwardSegment | None]]:
         """Yield a mass and all from there to the root, each with its link."""
         while True:
             link = self.links[mass]
@@ -309,10 +309,10 @@ class Tree:
             mass = link.parent
 
 
-def tree_from_first(chain: Chain) -> Tree:
+def tree_from_first(chain: Chain) -> ShaftTree:
     """Return the tree that Holzer's table is read along, from the first mass to the last, or to a fixed end behind."""
     ends = [segment for segment, (_, behind) in enumerate(chain.joins) if behind == GROUNDED]
-    return Tree(chain, ends[-1] if ends else None)
+    return ShaftTree(chain, ends[-1] if ends else None)
 
 
 # natural vibrations
@@ -382,7 +382,7 @@ class _Quotients:
     Without inertia of the segment s = 1 − r/k, and r/s arrives.
     """
 
-    def __init__(self, chain: Chain, tree: Tree, bars: _Bars, omegas: Array) -> None:
+    def __init__(self, chain: Chain, tree: ShaftTree, bars: _Bars, omegas: Array) -> None:
         self._tree, self._bars = tree, bars
         self.own = omegas * omegas * chain.inertias[:, None]
         self.at = self.own.copy()
@@ -416,7 +416,7 @@ class _Torques:
     def __init__(self, chain: Chain) -> None:
         self.before, self.behind = np.zeros((2, len(chain.joins)))
 
-    def set(self, link: Link, at_mass: float, at_parent: float) -> None:
+    def set(self, link: RootwardSegment, at_mass: float, at_parent: float) -> None:
         """Take the torques toward the root at the ends of the segment of a link."""
         if link.onward:
             self.before[link.segment], self.behind[link.segment] = at_mass, at_parent
@@ -429,7 +429,9 @@ class _Torques:
         # read from the mass to the ground
         _, at_ground = bars.onward(segment, angle, -from_ground)
         mass_is_before = chain.joins[segment][1] == GROUNDED
-        self.set(Link(segment, GROUNDED, mass_is_before), -from_ground, float(at_ground[0]))
+        self.set(
+            RootwardSegment(segment, GROUNDED, mass_is_before), -from_ground, float(at_ground[0])
+        )
 
 
 def holzer_at(chain: Chain, omega: float) -> Holzer:
@@ -491,7 +493,7 @@ class Modes:
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
         fixed = chain.fixed_segments
-        self._tree = Tree(chain, fixed[-1] if fixed else None)  # read toward a fixed end
+        self._tree = ShaftTree(chain, fixed[-1] if fixed else None)  # read toward a fixed end
 
     @cached_property
     def omegas(self) -> Array:
@@ -500,7 +502,7 @@ class Modes:
         Those of the elastic modes are the first numbers below which there are so many modes, to the last digit.
         """
         guessed = self._guessed()
-        found = guessed.copy()
+        frequencies = guessed.copy()
         # a singular value is known to a few units in the last place of the largest one
         margin = np.minimum(_LAST_PLACES * guessed[-1] / guessed, 0.5)
         low, high = guessed / (1 + margin), guessed * (1 + margin)
@@ -512,8 +514,8 @@ class Modes:
             tried[-1] = high
             has_more = self._below(tried.ravel()).reshape(tried.shape) > left
             first = has_more.argmax(axis=0)
-            places = np.arange(len(left))
-            inner_low, inner_high = tried[first - 1, places], tried[first, places]
+            indices = np.arange(len(left))
+            inner_low, inner_high = tried[first - 1, indices], tried[first, indices]
             # one that does not hold it is widened
             is_outside = has_more[0] | ~has_more[-1]
             margin = np.where(is_outside, 100 * margin, margin)
@@ -521,9 +523,9 @@ class Modes:
             high = np.where(is_outside, guessed[left] * (1 + margin), inner_high)
             # until nothing is between its ends
             is_found = ~is_outside & (np.nextafter(low, high) == high)
-            found[left[is_found]] = high[is_found]
+            frequencies[left[is_found]] = high[is_found]
             left, low, high, margin = (row[~is_found] for row in (left, low, high, margin))
-        return found if self.chain.is_held else np.append(0.0, found)
+        return frequencies if self.chain.is_held else np.append(0.0, frequencies)
 
     def _guessed(self) -> Array:
         """Return the elastic natural frequencies about, singular values of K^½ J^{−½}, inertias lumped."""

@@ -1,14 +1,10 @@
-"""What pumps and compressors deliver: flow over the angle, air vessels and pipes; capacities, temperatures, stages.
+"""What pumps and compressors deliver: flow over the angle, air vessels and pipes.
 
     q(φ) = (1 − slip) Σ A |dx/dt|            over the chambers that shrink; where they grow it is drawn in
     ΔV = swing of ∫ (q − q_m) dt             the fluctuating volume, found as ΔE of the turning effort is
     q = … ± A dx/dt                          also of a chamber that is always open to the pipe: differential pumps
     V = ΔV (r + 1)/(2 (r − 1))               air vessel; r = V_max/V_min = ((2 + δ)/(2 − δ))^(1/n), V = ΔV/δ for n = 1
     h_a = l/(g a) dq/dt, h_f = f l u²/(2 g d)    heads in a pipe of the section a, u = q/a; behind a vessel q is q_m
-    η_v = 1 − ε₀ [(p_d/p_s)^(1/n) − 1]       end of a compressor with the clearance ε₀
-    V̇ = η_v V_s n, m = p_s V̇/(R T₁)          capacity at suction, mass flow
-    T₂ = T₁ (p_d/p_s)^((n − 1)/n)            temperature of delivery
-    N_is = κ/(κ − 1) p_s V̇ [(p_d/p_s)^((κ − 1)/κ) − 1]
     A_W = 1 − A_R,m/A_R,0                    share of the work against pipe friction that vessels save
 
 Pressures in the formulas are absolute. The flow is sampled on the pieces of the cycle, which are cut at dead centres,
@@ -18,194 +14,45 @@ where the valves change.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from functools import cache, cached_property, partial, reduce
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array, Number, Truth
+from kurbel.arrays import Array, Number
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine.ideal_cards import Compressor
-from kurbel.machine.indicator import Card, Chamber, Rectangle
-from kurbel.machine.pumped import Gas, Pipe, Pump, Vessel
-from kurbel.numerics.arithmetic import every, some, total, unless_cancelled, where
+from kurbel.machine.pumped import Pipe, Pump, Vessel
+from kurbel.numerics.arithmetic import total, unless_cancelled, where
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces, resolved
 from kurbel.quantity import ValuesById, value, values_for
-from kurbel.solver.drive import Drive
+from kurbel.solver.chapters.compressors import (
+    CompressorEnd,
+    CompressorStage,
+    compressor_ends,
+    staged,
+)
+from kurbel.solver.chapters.driven_pistons import (
+    DrivenPiston,
+    OpenEnd,
+    absolute_levels,
+    displaced,
+    driven_pistons,
+    flow_of,
+    open_ends,
+)
 from kurbel.solver.effort import TurningEffort, position
 from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, result
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.gas import PistonGas
 from kurbel.solver.state import State
 
-_NORMAL = 101325.0, 273.15
-"""Pressure in Pa and temperature in K of normal conditions."""
 _CANCELLED = 4e-14
 """Relative to its largest value: a smaller flow is rounding."""
-
-# pistons that deliver
-
-
-class DrivenPiston(NamedTuple):
-    """A driven piston: its number in the cylinder, its pressures, which ends deliver, and whether it pumps."""
-
-    number: int
-    gas: PistonGas
-    head_delivers: bool
-    crank_delivers: bool
-    is_pump: bool
-
-
-def driven_pistons(drive: Drive) -> Iterator[DrivenPiston]:
-    """Yield the pistons of a cylinder that are driven by it.
-
-    Raises UsageError where many machines differ in that.
-    """
-    for gas in drive.gas:
-        # the gas takes work from a driven piston; a compressor without work is driven, too
-        chambers = list(gas.piston.chambers.values())
-        is_compressor = any(isinstance(chamber, Compressor) for chamber in chambers)
-        is_driven = _alike(gas.work < 0)
-        if not is_driven and is_compressor:
-            is_driven = not _alike(gas.work > 0)
-        if not is_driven:
-            continue
-        # an end delivers if work is done on its gas; there are works of the ends that there are
-        works = iter(gas.works)
-        head_delivers = gas.head is not None and _alike(next(works) < 0)
-        crank_delivers = gas.crank is not None and _alike(next(works) < 0)
-        # a pump is declared as one, or has a constant pressure on each stroke
-        is_pump = False
-        if not is_compressor:
-            is_pump = drive.machine.pump is not None or all(map(_is_level, chambers))
-        number = drive.cylinder.pistons.index(gas.piston)
-        yield DrivenPiston(number, gas, head_delivers, crank_delivers, is_pump)
-
-
-def _alike(condition: Truth) -> bool:
-    """Return the condition that all machines have in common; raises UsageError where they differ."""
-    holds_for_all = bool(every(condition))
-    if some(condition) and not holds_for_all:
-        raise UsageError("these machines differ in what is driven")
-    return holds_for_all
-
-
-def _is_level(chamber: Chamber | None) -> bool:
-    """Return whether a chamber has one pressure on each stroke, as a pump's has."""
-    return _levels(chamber) is not None
-
-
-def _levels(chamber: Chamber | None) -> list[Number] | None:
-    """Return the pressures in Pa that a chamber has, each on a whole stroke; of the ambient none; else None."""
-    if isinstance(chamber, Rectangle):
-        if some(chamber.mean != 0):
-            return None
-        return [] if chamber.level is None else [chamber.level]
-    if not isinstance(chamber, Card):
-        return None
-    levels = list[Number]()
-    for line in chamber.lines:
-        first = line.pressures[0]
-        if not all(np.array_equal(pressure, first) for pressure in line.pressures):
-            return None
-        levels.append(first)
-    return levels
-
-
-# chambers that are always open to a pipe
-
-
-class OpenEnd(NamedTuple):
-    """An end with one pressure on both strokes; that of a pipe, to which it is then always open.
-
-    number: of its piston in the cylinder; turned: whether that moves against the crosshead; pipe: delivery, suction,
-    or '' where it has the pressure of neither.
-    """
-
-    number: int
-    is_head: bool
-    turned: bool
-    pipe: str
-
-
-def _open_ends(drive: Drive, pipes: Mapping[str, Sequence[Number]]) -> Iterator[OpenEnd]:
-    """Yield the ends of pistons that do not drive which have one pressure on both strokes, but not the ambient one.
-
-    pipes: the absolute pressures in Pa in the delivery and in the suction pipes.
-    """
-    for gas in drive.gas:
-        if _alike(gas.work > 0):
-            continue
-        for end in ("head_end", "crank_end"):
-            levels = _absolute_levels(gas, end, drive.machine.ambient)
-            if not levels or not all(_are_equal(level, levels[0]) for level in levels):
-                continue
-            if _are_equal(levels[0], drive.machine.ambient):
-                continue
-            joined = ""
-            for pipe, pressures in pipes.items():
-                if any(_are_equal(levels[0], pressure) for pressure in pressures):
-                    joined = pipe
-            number = drive.cylinder.pistons.index(gas.piston)
-            yield OpenEnd(number, end == "head_end", gas.turned, joined)
-
-
-def _absolute_levels(gas: PistonGas, end: str, ambient: Number) -> list[Number]:
-    """Return the absolute pressures in Pa of an end that has one on each stroke; none of another end."""
-    lift = 0.0 if gas.absolute else ambient
-    return [level + lift for level in _levels(gas.piston.chambers.get(end)) or ()]
-
-
-def _are_equal(pressure: Number, other: Number) -> bool:
-    """Return whether two pressures in Pa are equal but for rounding, of all machines."""
-    difference = np.abs(np.subtract(pressure, other))
-    return _alike(difference <= _SAME_PRESSURE * np.maximum(np.abs(pressure), np.abs(other)))
-
-
-def _given_by(state: State, end: OpenEnd, is_derivative: bool) -> Array:
-    """Return dV/dφ in m³ of what an end that is always open gives to its pipe, or takes from it (negative)."""
-    dimensions = state.drive.cylinder.pistons[end.number]
-    area = dimensions.head_area if end.is_head else dimensions.crank_area
-    change = state.curvature if is_derivative else state.slope
-    # the head end grows on the outstroke, the crank end shrinks
-    shrinks_outward = end.is_head == end.turned
-    sense = 1.0 if shrinks_outward else -1.0
-    return sense * abs(dimensions.lever_ratio) * area * np.asarray(change)
-
-
-def _displaced(
-    state: State,
-    piston: DrivenPiston,
-    is_suction: bool = False,
-    is_derivative: bool = False,
-    head_counts: bool = True,
-    crank_counts: bool = True,
-) -> Array:
-    """Return dV/dφ in m³ of what the chambers of a piston deliver; on each stroke it is one of them.
-
-    is_suction: of what they draw in; is_derivative: d²V/dφ² instead; head_counts, crank_counts: whether that end does.
-    """
-    # of many machines the numbers of the piston of the state are those of the angles
-    dimensions = state.drive.cylinder.pistons[piston.number]
-    head_area = dimensions.head_area if piston.head_delivers and head_counts else 0.0
-    crank_area = dimensions.crank_area if piston.crank_delivers and crank_counts else 0.0
-    # a chamber delivers while its volume falls: the crank end on the outstroke, the head end on the return
-    # stroke, and it draws in on the other one; of a piston that a lever moves against the crosshead it is turned round
-    outward_area, return_area = crank_area, head_area
-    if is_suction != piston.gas.turned:
-        outward_area, return_area = head_area, crank_area
-    # dV/dφ = A dx/dφ is positive on both strokes
-    ratio = abs(dimensions.lever_ratio)
-    area = np.where(state.direction > 0, ratio * outward_area, -(ratio * return_area))
-    change = state.curvature if is_derivative else state.slope
-    return area * np.asarray(change)
-
 
 # pumps
 
@@ -265,7 +112,7 @@ _PIPE_WORKS = tuple(f"pipe_work{state}" for state in _WORKS)
 class Delivery(Results):
     """What one pumping piston, or all of a machine, deliver; key values in SI, of many machines (machines,).
 
-    pieces: of the cycle in degrees; rate: takes the words of `_displaced` and returns dV/dφ in m³ per radian at their
+    pieces: of the cycle in degrees; rate: takes the words of `displaced` and returns dV/dφ in m³ per radian at their
     nodes; is_double_acting: whether both ends of one piston deliver; pump: its pipes, None for one piston of several.
     Raises UsageError for a vessel that would empty.
     """
@@ -488,7 +335,7 @@ def _friction(pipe: Pipe) -> Number:
     return pipe.friction_factor * pipe.length / (2 * pipe.diameter * _section(pipe) ** 2)
 
 
-def _vessel(vessel: Vessel, swing: Number, place: str) -> tuple[Number, Number]:
+def _vessel(vessel: Vessel, swing: Number, side: str) -> tuple[Number, Number]:
     """Return mean volume in m³ and swing of pressure of a vessel that takes a fluctuating volume in m³."""
     # V = ΔV (r + 1)/(2 (r − 1)), r = ((2 + δ)/(2 − δ))^(1/n)
     if vessel.pressure_swing is not None:
@@ -503,7 +350,7 @@ def _vessel(vessel: Vessel, swing: Number, place: str) -> tuple[Number, Number]:
         least_text = show(float(half), "volume")
         volume_text = show(volume, "volume")
         raise UsageError(
-            f"pump.{place}_pipe.vessel.volume: {volume_text} would empty; "
+            f"pump.{side}_pipe.vessel.volume: {volume_text} would empty; "
             f"it must be more than ΔV/2 = {least_text}"
         )
     # r = V_max/V_min of the volumes, to the power n of the pressures; of many machines NaN where it empties
@@ -512,143 +359,6 @@ def _vessel(vessel: Vessel, swing: Number, place: str) -> tuple[Number, Number]:
     pressure_ratio = volume_ratio**vessel.exponent
     delta = 2 * (pressure_ratio - 1) / (pressure_ratio + 1)
     return where(is_empty, math.nan, volume), delta
-
-
-# compressors
-
-
-class CompressorEnd:
-    """One end of a compressor; figures: its key values in SI by id, those that there are, of many machines (machines,).
-
-    suction, delivery: absolute pressures in Pa, None with a drawn card or a trace.
-    """
-
-    def __init__(self, drive: Drive, piston: DrivenPiston, end: str) -> None:
-        gas = piston.gas
-        name = gas.piston.name
-        card = gas.piston.chambers[end]
-        is_head = end == "head_end"
-        area = gas.areas[0] if is_head else gas.areas[1]
-        self.owner = drive.name if piston.number == 0 else f"{drive.name}, {name}"
-        self.end = end.replace("_", " ")
-        self.loaded = not (isinstance(card, Compressor) and card.unloaded)
-        self.figures: ValuesById = {"stroke_volume": area * gas.stroke}
-        self.suction: Any = None
-        self.delivery: Any = None
-        if not isinstance(card, Compressor):
-            return
-        # absolute pressures
-        lift = 0.0 if gas.absolute else drive.machine.ambient
-        self.suction = card.suction + lift
-        self.delivery = card.delivery + lift
-        # the properties of the piston's gas come before those of the machine's
-        gases = [properties for properties in (gas.piston.gas, drive.machine.gas) if properties]
-        # there are works of the ends that there are; a turn is a share of the cycle
-        work = gas.works[0] if is_head or gas.head is None else gas.works[1]
-        self._add_figures(card, gases, drive.machine.speed, -(work / gas.repeats))
-
-    def _add_figures(
-        self, card: Compressor, gases: Sequence[Gas], speed: Number | None, work: Number
-    ) -> None:
-        """Add what follows from the card, from the first gas that has what is needed, and from the speed."""
-        figures = self.figures
-        ratio = self.delivery / self.suction
-        # η_v = 1 − ε₀ [(p_d/p_s)^(1/n) − 1], T₂ = T₁ (p_d/p_s)^((n − 1)/n)
-        efficiency: Number = 0.0
-        if self.loaded:
-            efficiency = 1 - card.clearance * (ratio ** (1 / card.of_expansion) - 1)
-            figures["volumetric_efficiency"] = efficiency
-        if self.loaded and gases:
-            n = card.exponent
-            figures["discharge_temperature"] = gases[0].inlet_temperature * ratio ** ((n - 1) / n)
-        if speed is None:
-            return
-        # V̇ = η_v V_s n
-        capacity = efficiency * figures["stroke_volume"] * speed
-        figures["capacity"] = capacity
-        figures["stage_power"] = work * speed
-        # m = p_s V̇/(R T₁), and the same mass at normal conditions
-        if gases:
-            density = self.suction / gases[0].inlet_temperature
-            figures["capacity_normal"] = density * capacity * (_NORMAL[1] / _NORMAL[0])
-            constants = [gas.gas_constant for gas in gases if gas.gas_constant is not None]
-            if constants:
-                figures["mass_flow"] = density * capacity / constants[0]
-        # N_is = κ/(κ − 1) p_s V̇ [(p_d/p_s)^((κ − 1)/κ) − 1]
-        kappas = [gas.isentropic_exponent for gas in gases if gas.isentropic_exponent is not None]
-        if kappas:
-            power = (kappas[0] - 1) / kappas[0]
-            bracket = np.expm1(power * np.log(ratio)) / power
-            figures["isentropic_power"] = self.suction * capacity * bracket
-
-
-_OF_ALL_ENDS = (
-    "stroke_volume",
-    "capacity",
-    "capacity_normal",
-    "mass_flow",
-    "stage_power",
-    "isentropic_power",
-)
-_OF_LOADED_ENDS = ("volumetric_efficiency", "discharge_temperature")
-
-
-class CompressorStage(Results):
-    """The ends of a compressor that have suction and delivery pressure in common, or one piston with another card."""
-
-    command = "delivery"
-
-    stroke_volume = value("V_s", "volume", "Volume that the delivering chambers displace in a turn")
-    volumetric_efficiency = value(
-        "η_v",
-        "ratio",
-        "Volumetric efficiency of the ends that deliver",
-        wanted_large=True,
-        plain="eta_v",
-    )
-    capacity = value("V_1", "flow", "Capacity: volume flow as it is drawn in", wanted_large=True)
-    capacity_normal = value(
-        "V_N", "flow", "Volume flow at normal conditions, 0 °C and 1.01325 bar", wanted_large=True
-    )
-    mass_flow = value("q_M", "mass_flow", "Mass flow", wanted_large=True)
-    discharge_temperature = value("T_2", "temperature", "Temperature of what is delivered")
-    stage_power = value("N_i,s", "power", "Indicated power that the stage takes")
-    isentropic_power = value("N_is", "power", "Power of the compression without heat")
-    isentropic_efficiency = value(
-        "η_is", "ratio", "Isentropic over indicated power", wanted_large=True
-    )
-
-    def __init__(self, ends: Sequence[CompressorEnd]) -> None:
-        self.name = self.part = ends[0].owner
-        self.ends = tuple(ends)
-        self.suction = ends[0].suction
-        self.delivery = ends[0].delivery
-
-    @cached_property
-    def answers(self) -> ValuesById:
-        """The key values; a stage all of whose ends are unloaded delivers nothing."""
-        figures = [end.figures for end in self.ends]
-        loaded = [end.figures for end in self.ends if end.loaded]
-        # sums over all ends
-        answers = ValuesById()
-        for id in _OF_ALL_ENDS:
-            if all(id in values for values in figures):
-                answers[id] = sum(values[id] for values in figures)
-        if not loaded:
-            return answers
-        # means over the volumes that the loaded ends displace
-        stroke_volume = sum(values["stroke_volume"] for values in loaded)
-        for id in _OF_LOADED_ENDS:
-            if all(id in values for values in loaded):
-                weighted = sum(values[id] * values["stroke_volume"] for values in loaded)
-                answers[id] = weighted / stroke_volume
-        # η_is where power is taken
-        if "isentropic_power" in answers:
-            takes_power = answers["stage_power"] > 0
-            if some(takes_power):
-                power = where(takes_power, answers["stage_power"], math.nan)
-                answers["isentropic_efficiency"] = answers["isentropic_power"] / power
-        return answers
 
 
 # the machine
@@ -674,13 +384,13 @@ class MachineDelivery:
                 if piston.is_pump:
                     self._pumps.append((forces, piston))
                 else:
-                    ends += _compressor_ends(forces.drive, piston)
-        self.stages: tuple[CompressorStage, ...] = _staged(ends)
+                    ends += compressor_ends(forces.drive, piston)
+        self.stages: tuple[CompressorStage, ...] = staged(ends)
         pumping = [piston for _, piston in self._pumps]
         pipes = _pressures_of_pipes(pumping, self.machine.ambient)
         if self._pumps:
             for forces in effort.cylinders:
-                self._open += [(forces, end) for end in _open_ends(forces.drive, pipes)]
+                self._open += [(forces, end) for end in open_ends(forces.drive, pipes)]
         if not (self._pumps or self.stages):
             raise UsageError(
                 f"{self.machine.name} delivers nothing: no piston is driven by the shaft; "
@@ -769,20 +479,20 @@ class MachineDelivery:
     ) -> Callable[..., Array]:
         """Return what returns dV/dφ of these pistons together, less the slip, and of ends that are always open.
 
-        It takes the words of `_displaced`.
+        It takes the words of `displaced`.
         """
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         share = 1 - slip
 
         def rate(**words: bool) -> Array:
             terms = [
-                pieces.of(share) * _displaced(state, piston, **words) for state, piston in pistons
+                pieces.of(share) * displaced(state, piston, **words) for state, piston in pistons
             ]
             is_suction = words.get("is_suction", False)
             for state, end in ends:
                 if end.pipe == ("suction" if is_suction else "delivery"):
-                    given = _given_by(state, end, words.get("is_derivative", False))
-                    terms.append(-given if is_suction else given)
+                    own_flow = flow_of(state, end, words.get("is_derivative", False))
+                    terms.append(-own_flow if is_suction else own_flow)
             rates = pieces.filled(sum(terms))
             # rates of which the terms cancel at all angles are rounding
             sizes = sum(map(pieces.largest, terms))
@@ -800,76 +510,8 @@ def _pressures_of_pipes(
     for piston in pistons:
         delivering = {"head_end": piston.head_delivers, "crank_end": piston.crank_delivers}
         for end, delivers in delivering.items():
-            levels = _absolute_levels(piston.gas, end, ambient) if delivers else []
+            levels = absolute_levels(piston.gas, end, ambient) if delivers else []
             if len(levels) > 1:
                 pipes["delivery"].append(reduce(np.maximum, levels))
                 pipes["suction"].append(reduce(np.minimum, levels))
     return pipes
-
-
-def _compressor_ends(drive: Drive, piston: DrivenPiston) -> Iterator[CompressorEnd]:
-    """Yield the ends of a piston that compress, or have the card of a compressor."""
-    for end, delivers in (
-        ("head_end", piston.head_delivers),
-        ("crank_end", piston.crank_delivers),
-    ):
-        if delivers or isinstance(piston.gas.piston.chambers.get(end), Compressor):
-            yield CompressorEnd(drive, piston, end)
-
-
-def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
-    """Return the stages that ends of equal pressures make, the lowest suction first; those without any last.
-
-    Raises UsageError for many machines whose stages are not alike: they are computed one by one.
-    """
-    # an end joins the first group with its pressures
-    groups: list[list[CompressorEnd]] = []
-    for end in ends:
-        for group in groups:
-            if _are_of_one_stage(group[0], end):
-                group.append(end)
-                break
-        else:
-            groups.append([end])
-    stages = [CompressorStage(group) for group in groups]
-    stages.sort(key=_suction_of)
-    # stages with known pressures are numbered; all know their pistons
-    number = 0
-    for stage in stages:
-        stage.part = _part_of(stage.ends, ends)
-        if stage.suction is not None:
-            number += 1
-            stage.name = f"stage {number}"
-    return tuple(stages)
-
-
-def _suction_of(stage: CompressorStage) -> float:
-    """Return the suction pressure of a stage in Pa, of many machines their mean; without one infinity."""
-    if stage.suction is None:
-        return math.inf
-    return float(np.mean(stage.suction))
-
-
-_SAME_PRESSURE = 1e-9
-"""Relative difference of pressures that are equal but for rounding."""
-
-
-def _are_of_one_stage(end: CompressorEnd, other: CompressorEnd) -> bool:
-    """Return whether two ends have suction and delivery pressure in common, or are of one piston without them."""
-    if end.suction is None or other.suction is None:
-        return end.suction is other.suction and end.owner == other.owner
-    same_suction = np.abs(end.suction - other.suction) <= _SAME_PRESSURE * np.abs(end.suction)
-    same_delivery = np.abs(end.delivery - other.delivery) <= _SAME_PRESSURE * np.abs(end.delivery)
-    are_same = np.ravel(same_suction & same_delivery)
-    if are_same.any() != are_same.all():
-        raise UsageError("the stages of these machines are not alike")
-    return bool(are_same.all())
-
-
-def _part_of(of_stage: Sequence[CompressorEnd], ends: Sequence[CompressorEnd]) -> str:
-    """Return the name of a stage by its pistons; by its ends, where a piston has others in another stage."""
-    names: list[str] = []
-    for end in of_stage:
-        has_others = any(other.owner == end.owner and other not in of_stage for other in ends)
-        names.append(f"{end.owner}, {end.end}" if has_others else end.owner)
-    return " + ".join(dict.fromkeys(names))

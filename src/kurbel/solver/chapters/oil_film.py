@@ -1,15 +1,18 @@
 """The oil film of a pin or main bearing over the cycle, by the mobility method (Booker 1971, Moes).
 
-Complex numbers are seen from the shell, in the sense of rotation. ε is how far the journal is out of the middle of the
-shell, over the radial clearance c; f is the direction in which the load F presses it, and ξ + iη = ε e^{−i arg f}. In a
-frame that turns at half the speeds of both surfaces together the film is squeezed alone; hence, per radian of the crank,
+Complex numbers are seen from the shell, in the sense of rotation. ε is how far the journal is out
+of the middle of the shell, over the radial clearance c; f is the direction in which the load F
+presses it, and ξ + iη = ε e^{−i arg f}. In a frame that turns with the mean speed of both surfaces
+the film is squeezed alone; hence, per radian of the crank,
 
-    ε′ = K |F| (M_ξ + i M_η) f + ½ i τ ε        K = (2c/D)²/(μ L D ω)        τ = (ω_journal − ω_shell)/ω
-    M_ξ = (1−ξ)^{3/2} (1−ξ + 0.6 Λ)/(π λ²)      M_η = −4 η (1−ξ)^{1/2} (1−ξ + 0.28 Λ)/(π² λ²)
-    λ = L/D of one land                          Λ = λ²/(1 + λ/4), of the short bearing 0
+    ε′ = K |F| (M_ξ + i M_η) f + ½ i τ ε
+    K = (2c/D)²/(μ L D ω)                     τ = (ω_journal − ω_shell)/ω
+    M_ξ = (1−ξ)^{3/2} (1−ξ + 0.6 Λ)/(π λ²)    M_η = −4 η (1−ξ)^{1/2} (1−ξ + 0.28 Λ)/(π² λ²)
+    λ = L/D of one land                       Λ = λ²/(1 + λ/4), of the short bearing 0
 
-0.6, 0.28 and 1/4 are fitted to solutions of Reynolds' equation for finite length (docs/oil-film.md). The unknown is
-y = ε/√(1−ε²): every y is inside the shell, and no digit is lost near the wall.
+0.6, 0.28 and 1/4 are fitted to solutions of Reynolds' equation for finite length
+(docs/oil-film.md). The unknown is y = ε/√(1−ε²): every y is inside the shell, and no digit is lost
+near the wall.
 """
 
 from __future__ import annotations
@@ -35,16 +38,19 @@ _ALONG = 0.6
 _ACROSS = 0.28
 """Share of Λ in the mobility across the load."""
 _FROM_MIDDLE = 300.0
-"""Largest K |F| that is solved from a journal in the middle; heavier loads start from the orbit of lighter ones."""
+"""Largest K |F| that is solved from a journal in the middle; heavier loads follow lighter ones."""
 _STEP = 1e-30
 """A complex step: the imaginary part of what it gives, over the step, is the derivative."""
 _BISECTIONS = 54
 _FARTHEST = 1e6
-"""Largest y of a film, 5e-13 of the clearance thick; beyond, the journal is on its way to the wall for ever."""
+"""Largest y of a film, 5e-13 of the clearance thick; beyond, the journal only nears the wall."""
 
 
 class FilmShape(NamedTuple):
-    """What oil and bearing are, in SI; numbers, or arrays of many machines or pieces. length: of all lands together."""
+    """Oil and bearing in SI: numbers, or arrays of many machines or pieces.
+
+    length: of all lands together.
+    """
 
     clearance: Any
     diameter: Any
@@ -55,7 +61,7 @@ class FilmShape(NamedTuple):
 
     @classmethod
     def of_bearing(cls, films: OilFilms, key: str, diameter: Any, length: Any) -> FilmShape:
-        """Return the shape of the bearing with this key, on a pin of these sizes unless it has its own."""
+        """Return the shape of the bearing with this key; sizes: of its pin, where it has none."""
         bearing = films.bearings[key]
         diameter = diameter if bearing.diameter is None else bearing.diameter
         length = length if bearing.length is None else bearing.length
@@ -110,7 +116,7 @@ def along_load(y: Array, pressed: ComplexArray) -> ComplexArray:
 
 
 def gap_of(p: Any, q: Any) -> Any:
-    """Return 1 − ξ, the film toward the load over c, at p + iq; no digit is lost where it nearly vanishes."""
+    """Return 1 − ξ, the film toward the load over c, at p + iq; no digit is lost near the wall."""
     root = np.sqrt(1 + p * p + q * q)
     return np.where(p.real > 0, (1 + q * q) / (root * (root + p)), 1 - p / root)
 
@@ -128,8 +134,9 @@ def mobility(p: Any, q: Any, lam: Any, finite: Any) -> tuple[Any, Any]:
 def peak_factor(seen: ComplexArray) -> Array:
     """Return P, the largest pressure of a short film over F/(L D), at p + iq.
 
-    P = 6 (m·n)/(1 − ε·n)³ at its largest over the directions n, with m = λ² (M_ξ, M_η) of the short film. Seen from m
-    with ε = a + ib, n = e^{iα} and b (1 + 2 cos²α) = sin α (1 + 2a cos α), of one solution on the side of b.
+    P = 6 (m·n)/(1 − ε·n)³ at its largest over the directions n, with m = λ² (M_ξ, M_η) of the short
+    film. Seen from m with ε = a + ib, n = e^{iα} and b (1 + 2 cos²α) = sin α (1 + 2a cos α), which
+    has one solution on the side of b.
     """
     along, across = mobility(seen.real, seen.imag, 1.0, 0.0)
     strength = np.hypot(along, across)
@@ -152,8 +159,8 @@ def peak_factor(seen: ComplexArray) -> Array:
 class FilmEquation:
     """y′ of the oil film, for `kurbel.numerics.collocation`.
 
-    course: both parts of K F toward where the journal is pressed, and τ, (3, nodes, pieces); share (machines,): of the
-    load that acts.
+    course: both parts of K F toward where the journal is pressed, and τ, (3, nodes, pieces); share
+    (machines,): of the load that acts.
     """
 
     unknowns = 2
@@ -198,7 +205,10 @@ class FilmEquation:
 
 
 def orbit_of(equation: FilmEquation, pieces: Pieces, largest: Array) -> Periodic:
-    """Return the orbits; largest: K |F| of every machine. Heavy loads are raised to their size by factors of ten."""
+    """Return the orbits. Heavy loads are raised to their size by factors of ten.
+
+    largest (machines,): K |F|.
+    """
     tens = np.ceil(np.log10(np.maximum(np.nan_to_num(largest) / _FROM_MIDDLE, 1.0)))
     equation.share = 10.0**-tens
     orbit = periodic(equation, pieces)
@@ -211,7 +221,7 @@ def orbit_of(equation: FilmEquation, pieces: Pieces, largest: Array) -> Periodic
 
 
 class FilmAtAngles(NamedTuple):
-    """The film of one bearing at y (2, n) under a load in N (n,), toward where it presses; columns in SI (n,)."""
+    """The film at y (2, n) under a load in N (n,), toward where it presses; columns in SI (n,)."""
 
     shape: FilmShape
     y: Array
@@ -241,10 +251,11 @@ class FilmAtAngles(NamedTuple):
 
 
 class OilFilm(Results):
-    """The oil film of one bearing over the cycle; key values in SI, of many machines arrays (machines,).
+    """The oil film of one bearing over the cycle; key values in SI, of many machines (machines,).
 
-    pressed: the load in N, seen from the shell, toward where it presses the journal; turning: τ, (nodes, pieces) each;
-    omega: of the crank in rad/s. Of machines whose film does not repeat values are nan; of the only one there are none.
+    pressed: the load in N, seen from the shell, toward where it presses the journal; turning: τ,
+    (nodes, pieces) each; omega: of the crank in rad/s. Of machines whose film does not repeat
+    values are nan; of the only one there are none.
     """
 
     command = "bearings"
@@ -255,7 +266,8 @@ class OilFilm(Results):
     film_loss = value(
         "N_F",
         "power",
-        "Mean friction power of the oil film, which counts as filled all round: an upper bound",
+        "Mean friction power of the oil film as if it were full all round, an upper bound; not "
+        "part of T and M",
     )
     side_flow = value(
         "q_F",
@@ -294,7 +306,10 @@ class OilFilm(Results):
         return "the load turns with the oil or never leaves its side; no film repeats"
 
     def at_angles(self, degrees: Array, pressed: ComplexArray) -> FilmAtAngles | None:
-        """Return the film of the only machine at crank angles (n,) in degrees under a load (n,) there, if it repeats."""
+        """Return the film of the only machine, if it repeats.
+
+        degrees: crank angles (n,); pressed: the load there, as in the class.
+        """
         if self.obstacle:
             return None
         machine = np.zeros(len(degrees), dtype=np.intp)

@@ -35,7 +35,7 @@ from kurbel.solver.chapters.chain import (
     ChainEquation,
     Holzer,
     Modes,
-    Tree,
+    ShaftTree,
     loss,
     passing,
     response,
@@ -267,7 +267,7 @@ def mean_torques(chain: Chain, means: Array) -> Array:
     """Return the mean torques in N m that the segments carry, (segments,), of mean torques on the masses (n,)."""
     torques = np.zeros(len(chain.joins))
     fixed = chain.fixed_segments
-    tree = Tree(chain, fixed[-1] if fixed else None)
+    tree = ShaftTree(chain, fixed[-1] if fixed else None)
     # with one fixed end, or none, each segment carries what acts beyond it
     beyond = means.astype(float)
     for mass in tree.leaves_first:
