@@ -163,23 +163,27 @@ def of_rods() -> Formulas:
 def of_balance() -> Formulas:
     # a long rod is shaken most at the inner dead centre, m R ω² (1 + λ); one hardly longer than the crank near 90°
     crank, omega = mpf(0.4), 2 * mp.pi
-    length = mpf(0.4 * 1.0001)  # rounded; 1 u of it is 2500 u of the force
-
-    def slowing(phi: mpmath.mpf) -> mpmath.mpf:
-        """Return −d²x/dφ² of x = R (1 − cos φ) + L − √(L² − R² sin² φ)."""
-        sin, cos = mp.sin(phi), mp.cos(phi)
-        height = mp.sqrt(length**2 - (crank * sin) ** 2)
-        of_rod = crank**2 * (cos**2 - sin**2) / height + crank**4 * (sin * cos) ** 2 / height**3
-        return -(crank * cos + of_rod)
-
-    top = mp.findroot(lambda phi: mp.diff(slowing, phi), (mp.pi / 2, mp.pi / 2 + mpf(1e-9)))
-    return {
-        ("L/R = 1.0001", "balance F_free_max"): 100 * omega**2 * slowing(top),
+    formulas = {
         ("100 cylinders in phase", "balance F_free_max"): 10_000
         * crank
         * omega**2
-        * (1 + mpf(1) / 5),
+        * (1 + mpf(1) / 5)
     }
+    for ratio in (1.0001, 1.0000001):
+        length = mpf(0.4 * ratio)  # rounded; 1 u of it is 2500 u, and 2.5e6 u, of the force
+
+        def slowing(phi: mpmath.mpf, length: mpmath.mpf = length) -> mpmath.mpf:
+            """Return −d²x/dφ² of x = R (1 − cos φ) + L − √(L² − R² sin² φ)."""
+            sin, cos = mp.sin(phi), mp.cos(phi)
+            height = mp.sqrt(length**2 - (crank * sin) ** 2)
+            of_rod = crank**2 * (cos**2 - sin**2) / height + crank**4 * (sin * cos) ** 2 / height**3
+            return -(crank * cos + of_rod)
+
+        begin = mp.pi / 2
+        top = mp.findroot(lambda phi, force=slowing: mp.diff(force, phi), (begin, begin + 1e-9))
+        name = (f"L/R = {ratio:.8g}", "balance F_free_max")
+        formulas[name] = 100 * omega**2 * slowing(top)
+    return formulas
 
 
 def of_delivery() -> Formulas:

@@ -19,7 +19,7 @@ PLAIN = "{speed: 60 rpm, crank: 400 mm, rod_ratio: 5}"
 
 
 def test_there_are_many_cases() -> None:
-    assert len(CASES) == 179
+    assert len(CASES) == 180
     assert all(case.asked and case.expected for case in CASES)
 
 
