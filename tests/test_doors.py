@@ -384,7 +384,8 @@ def test_none_but_kinds_and_references_name_the_class_of_a_mechanism() -> None:
         for head in [at_head(module)]
         if head & mechanisms and not module.startswith(("mechanisms", "accuracy"))
     }
-    assert naming == set()
+    # a link rod makes a mechanism of the slider-crank of its master
+    assert naming <= {"machine.link_rod"}
 
 
 def test_the_word_of_a_chapter_is_that_of_its_class() -> None:

@@ -182,3 +182,20 @@ def test_along_a_bent_valley_to_the_edge(steep: float, fall: float) -> None:
     place, value = lowest(valley, 2)
     assert place == pytest.approx([1.0, 0.5 + 0.3 * math.sin(6.0)], abs=1e-9)
     assert value < 1e-12
+
+
+def test_round_many_curves_with_fine_waves() -> None:
+    """Sixty curves at once, whose farthest points are anywhere: each is within its circle, and touches it all round."""
+    draw = np.random.default_rng(7)
+    waves = draw.normal(size=(17, 60)) + 1j * draw.normal(size=(17, 60))
+    waves *= 0.95 ** np.abs(np.arange(-8, 9))[:, None]
+    of = ClosedCurve(waves)
+    centre, radius, _ = of.least_circle()
+    angles = np.linspace(0.0, 360.0, 1801)[:, None] * np.ones(60)
+    arms = of.at(angles, np.arange(60)[None])[0] - centre
+    assert (np.abs(arms) / radius).max() <= 1 + 1e-12
+    for machine in range(60):
+        touching = arms[np.abs(arms[:, machine]) > radius[machine] * (1 - 2e-4), machine]
+        turns = np.sort(np.angle(touching))
+        gaps = np.diff(np.append(turns, turns[0] + 2 * math.pi))
+        assert gaps.max() < math.pi + 0.05

@@ -39,6 +39,8 @@ def unknown(machine: Machine, quantity: str) -> Iterator[str]:
     """Yield what of a machine has no independent calculation of a quantity here."""
     if quantity in "xcb":
         return
+    if any(cylinder.link_rod for cylinder in machine.cylinders):
+        yield "link rods"
     for cylinder in taking_part(machine, quantity):
         for piston in cylinder.pistons:
             cards = piston.chambers.values()

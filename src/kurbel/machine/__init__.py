@@ -560,6 +560,11 @@ class Machine(Record):
                     f"the force on the crank pin of a {mechanism.name} is not known; "
                     "give a slider-crank"
                 )
+            if cylinder.link_rod is not None:
+                return (
+                    "the strength of a crank pin under link rods is not computed; "
+                    "kurbel bearings prints its loads"
+                )
             if any(piston.indicator for piston in cylinder.pistons):
                 has_pressure = True
         if not has_pressure:

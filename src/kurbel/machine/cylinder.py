@@ -37,6 +37,7 @@ from kurbel.mechanisms.kinds import MECHANISMS
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
+    from kurbel.machine.link_rod import LinkRod
     from kurbel.machine.valve import Valve
 
 MOST_TURNS = 100
@@ -58,10 +59,6 @@ _OTHER_NAMES = {
 """Common name of a mechanism -> the word of the machine file."""
 
 
-_ROD_ON_ROD = (
-    "a rod on the knuckle pin of a master rod has no key: all rods count as on the crank pin, "
-    "which cylinders share that have a 'bank_angle' each and no 'crank_position'"
-)
 _SPRING = (
     "a spring on what slides has no key; a straight card on a piston of 1 m2 has its force: "
     "'bore: 1128.379167 mm', and in 'indicator.head_end' 'unit: Pa', "
@@ -73,12 +70,15 @@ _PIN_OFFSET = (
 )
 _NO_KEYS = {
     "pin_offset": _PIN_OFFSET,
-    **dict.fromkeys(
-        ("link_rod", "master_rod", "master", "slave_rod", "articulated_rod"), _ROD_ON_ROD
-    ),
     **dict.fromkeys(("spring", "spring_rate", "spring_stiffness"), _SPRING),
 }
 """Word for what a cylinder may have, but no key describes -> what to write instead."""
+
+
+def _link_rod() -> type[LinkRod]:
+    from kurbel.machine.link_rod import LinkRod
+
+    return LinkRod
 
 
 def _valve() -> type[Valve]:
@@ -205,6 +205,13 @@ class Cylinder(Record):
         _valve,
         "Slide or piston valve driven by an eccentric, which sets the events of `steam` cards",
         absent="none",
+    )
+
+    link_rod: LinkRod | None = field(
+        _link_rod,
+        "Rod on a knuckle pin of the master rod of an earlier cylinder, instead of the crank pin",
+        absent="the rod is on the crank pin",
+        also=("master", "master_rod", "articulated_rod", "slave_rod", "knuckle_pin"),
     )
 
     @classmethod

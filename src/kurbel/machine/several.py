@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby, product
+from typing import Any
 
 from kurbel.crank_angle import CYCLES
 from kurbel.declared.forms.structures import RecordForm
@@ -101,6 +102,11 @@ class EqualCylinders(Record):
         advice = "'throw_angles' sets it; leave it out"
         yield Rule(("each", "crank_position"), is_set_twice, advice)
 
+        link_rod = self.each.link_rod
+        advice = "of equal cylinders the first one of every throw has the master rod; leave it out"
+        names_master = link_rod is not None and bool(link_rod.master)
+        yield Rule(("each", "link_rod", "master"), names_master, advice)
+
         advice = "equal cylinders have 'throw_angles' beside 'count', one for each throw"
         yield Rule(("each", "throw_angle"), self.each.throw_angle is not None, advice)
 
@@ -115,6 +121,14 @@ class EqualCylinders(Record):
         angles = self._bank_of_each
         sizes = {angles.count(angle) for angle in angles}
         return sizes.pop() if len(sizes) == 1 else None
+
+    def _master_of(self, index: int, throw: int) -> int:
+        """Return the index of the first cylinder on the throw of a cylinder."""
+        angles = self._bank_of_each
+        for other in range(index + 1):
+            if angles[:other].count(angles[other]) == throw:
+                return other
+        return index
 
     @property
     def cylinders(self) -> tuple[Cylinder, ...]:
@@ -138,6 +152,11 @@ class EqualCylinders(Record):
         if self.throw_angles:
             number = index if len(self.throw_angles) == self.count else throw
             throw_angle = self.throw_angles[number] - self.throw_angles[0]
+        link_rod = pattern.link_rod
+        if link_rod is not None:
+            # the first cylinder of every throw has the master rod
+            master = f"{pattern.name or 'cylinder'} {self._master_of(index, throw) + 1}"
+            link_rod = replace(link_rod, master=master) if bank else None
         inclination = pattern.inclination
         if bank_angle and inclination is not None:
             inclination = (inclination + bank_angle + 180.0) % 360.0 - 180.0
@@ -150,6 +169,7 @@ class EqualCylinders(Record):
             name=f"{pattern.name or 'cylinder'} {index + 1}",
             crank_position=crank_position,
             throw_angle=throw_angle,
+            link_rod=link_rod,
             bank_angle=pattern.bank_angle + bank_angle,
             inclination=inclination,
             axial_position=axial_position,
@@ -165,6 +185,8 @@ def in_order(
     """
     if isinstance(cylinders, EqualCylinders):
         return _equal_in_order(cylinders, order, cycle)
+    if any(cylinder.link_rod for cylinder in cylinders):
+        return _linked_in_order(cylinders, order, cycle, ("firing_order",))
     if any(cylinder.throw_angle is not None for cylinder in cylinders):
         return on_throws(cylinders, order, cycle, ("firing_order",))
     if order:
@@ -185,6 +207,9 @@ def _equal_in_order(
     if order and (equal.firing_order or equal.crank_positions):
         what = "crank positions are" if equal.crank_positions else "a firing order is"
         refused(f"{what} also given in 'cylinders'; leave one of them out", "firing_order")
+    if equal.each.link_rod:
+        where = ("cylinders", "firing_order") if equal.firing_order else ("firing_order",)
+        return _linked_in_order(equal.cylinders, equal.firing_order or order, cycle, where)
     if equal.throw_angles:
         where = ("cylinders", "firing_order") if equal.firing_order else ("firing_order",)
         return on_throws(equal.cylinders, equal.firing_order or order, cycle, where)
@@ -283,6 +308,34 @@ def on_throws(
         message = f"these throws cannot fire in this order; the most even order on them is {best}"
         refused(message, *where)
     return fired_in_turns
+
+
+def _linked_in_order(
+    cylinders: Sequence[Cylinder], order: tuple[int, ...] | None, cycle: str, where: Path
+) -> tuple[Cylinder, ...]:
+    """Return cylinders of which some have link rods, on the pins of their masters; see `on_throws`."""
+    from kurbel.machine.link_rod import with_links
+
+    linked = with_links(cylinders)
+    first = linked[0]
+    names = [cylinder.name or f"cylinder {index + 1}" for index, cylinder in enumerate(linked)]
+    on_pins: list[Cylinder] = []
+    # as in a cylinder that gives no crank position
+    free: Any = None
+    for index, cylinder in enumerate(linked):
+        if cylinder.link_rod:
+            master = on_pins[names.index(cylinder.link_rod.master)]
+            cylinder = replace(cylinder, throw_angle=master.throw_angle, crank_position=free)
+        elif cylinder.throw_angle is None and cylinder.crank_position is None:
+            # where no pin is given, that of cylinder 1
+            if index == 0 or order is None:
+                cylinder = replace(cylinder, throw_angle=0.0)
+        elif cylinder.throw_angle is None:
+            bank_angle = cylinder.bank_angle - first.bank_angle
+            pin = crank_lag(cylinder, first) - bank_angle
+            cylinder = replace(cylinder, throw_angle=pin)
+        on_pins.append(cylinder)
+    return on_throws(on_pins, order, cycle, where)
 
 
 def _without_throw(cylinders: Sequence[Cylinder]) -> Iterator[Fault]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from kurbel.solver.gas import PistonGas
 from kurbel.solver.motion import every_dead_centre
 
 if TYPE_CHECKING:
+    from kurbel.mechanisms.link_rod import LinkedPiston
     from kurbel.solver.shaft import SupportedShaft
 
 _IDLE = 1e-4
@@ -67,7 +68,8 @@ class Drive:
 
     mass: reciprocating, 0 without masses; rod: a connecting rod given by centre of gravity and moment of inertia, else
     None; rod_centrifugal_force: m R ω² of the rotating part of another rod, which D of R 302 excludes (that of an exact
-    rod is included); pin_inertia: m R² of what rotates with the crank pin; has_inertia: masses and a speed are given.
+    rod is included); knuckle_mass: of a link rod at its knuckle pin; pin_inertia: m R² of what rotates with the crank pin;
+    has_inertia: masses and a speed are given.
 
     weight: of the reciprocating masses along the stroke line and on the guide, None where it is left out; down: cos of
     the inclination i (180° − i if the machine turns under), None without one: if positive, N > 0 loads the lower guide.
@@ -108,6 +110,10 @@ class Drive:
         self.rod_centrifugal_force: Number = (
             self.centrifugal(rod.mass * (1 - rod.share)) if rod and not exact else 0.0
         )
+        # of a link rod at its knuckle pin
+        self.knuckle_mass: Number = 0.0
+        if cylinder.link_rod is not None:
+            self.knuckle_mass = cylinder.link_rod.knuckle_mass
         self.has_inertia = masses is not None and self.omega is not None
 
         inclination = machine.inclination_of(cylinder)
@@ -160,6 +166,15 @@ class Drive:
         )
         return other
 
+    @cached_property
+    def links(self) -> tuple[Drive, ...]:
+        """The cylinders whose link rods are on the master rod of this one; of many machines with their numbers."""
+        links = []
+        for cylinder in self.machine.cylinders:
+            if cylinder.link_rod is not None and cylinder.link_rod.master == self.name:
+                links.append(Drive(self.machine, cylinder, self.count, self.index))
+        return tuple(links)
+
     @property
     def pieces(self) -> Pieces:
         """The cycle between the angles at which something bends or jumps: dead centres and the corners of cards."""
@@ -168,6 +183,12 @@ class Drive:
         bends = [Angles(np.repeat(np.arange(count), centres.shape[1]), centres.ravel())]
         for gas in self.gas:
             bends += gas.starts
+        # the guide of a master rod feels where something bends or jumps in its links
+        for link in self.links:
+            ends = link.pieces.ends
+            owners = np.repeat(np.arange(count), len(ends) // count)
+            between = cast("LinkedPiston", link.mechanism).between
+            bends.append(Angles(owners, np.mod(ends + between, self.cycle)))
         machine = np.concatenate([angles.machine for angles in bends])
         degrees = np.concatenate([angles.degrees for angles in bends])
         is_dense = len(degrees) >= _DENSE * count

@@ -51,6 +51,8 @@ def torque_of_inertia(state: State) -> Any:
     rod, omega = state.drive.rod, state.drive.omega
     assert omega is not None
     torque = state.slope * state.curvature * (-state.drive.mass * omega * omega)
+    if state.drive.cylinder.link_rod is not None:
+        torque = torque + state.knuckle_inertia_torque
     if rod is None:
         return torque
     return torque - state.rod_couple * state.rod_slope
@@ -64,7 +66,8 @@ def position(forces: CylinderForces) -> Number:
 def moves(group: Sequence[CylinderForces]) -> bool:
     """Return whether identical cylinders have moving masses and a speed."""
     drive = group[0].drive
-    has_mass = some(drive.mass != 0) or some(drive.pin_inertia != 0)
+    masses = (drive.mass, drive.pin_inertia, drive.knuckle_mass)
+    has_mass = any(some(mass != 0) for mass in masses)
     return bool(drive.has_inertia and has_mass)
 
 

@@ -120,6 +120,8 @@ class CylinderForces(SampledCylinder, Results):
 
         Where journals rub, each carries what its own throw carries.
         """
+        if self.drive.links:
+            return False
         friction = self.drive.pin_friction
         if friction is not None and friction.line is not None and some(friction.journals != 0):
             return False

@@ -57,9 +57,12 @@ class _Motion(NamedTuple):
 def residual(cylinder: SampledCylinder) -> float | None:
     """Return the residual of Newton's law for one machine, or the tail of the series of the forces if that is larger.
 
-    Both relative to the largest force; None where no force acts, or there is no connecting rod.
+    Both relative to the largest force; None where no force acts, or there is no connecting rod. Left out of master
+    rods and link rods, which push on each other.
     """
     drive, mechanism = cylinder.drive, cylinder.drive.mechanism
+    if drive.links or drive.cylinder.link_rod is not None:
+        return None
     is_slider_crank = mechanism.has_rod and bool(mechanism.slides)
     if not drive.has_force or drive.count is not None or not is_slider_crank:
         return None

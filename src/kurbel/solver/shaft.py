@@ -250,6 +250,9 @@ class SupportedShaft:
         angle, for the weight of the flywheel.
         """
         weight = flywheel_weight(self.machine, cylinder, angle) if throw.flywheel else 0.0
+        if any(self.machine.cylinders[index].link_rod for index in throw.cylinders):
+            # link rods push through the big end of their master rod
+            rods = [sum(rods)]
         body = FreeBody(self.shaft, cylinder.mechanism.crank, rods, weight)
         omega = 0.0 if self.machine.speed is None else 2 * math.pi * self.machine.speed
         # what turns pulls outward, against D
@@ -364,7 +367,8 @@ class CylinderThrow(NamedTuple):
 
     number: of the cylinder, from 0; place: along the shaft in m; bank: γ from the stroke line of cylinder 1 in degrees;
     lag: δ of its crank angle in degrees; arm: the crank in m, complex, in its direction at φ = 0; rotating: mass that
-    turns with the pin; unbalanced: that of the crank among it, without the rod; mass: reciprocating.
+    turns with the pin; unbalanced: that of the crank among it, without the rod; mass: reciprocating;
+    knuckle_mass: of a link rod at its knuckle pin.
     """
 
     number: int
@@ -377,6 +381,7 @@ class CylinderThrow(NamedTuple):
     rotating: Number
     unbalanced: Number
     mass: Number
+    knuckle_mass: Number = 0.0
 
     def weight(self, mass: Number) -> Weight:
         """Return a mass at the crank pin."""
@@ -403,6 +408,7 @@ def throws_with_masses(machine: Machine) -> list[CylinderThrow]:
             masses.at_pin(length) if masses else 0.0,
             masses.rotating if masses else 0.0,
             masses.at_crosshead(length) if masses else 0.0,
+            cylinder.link_rod.knuckle_mass if cylinder.link_rod else 0.0,
         )
         throws.append(throw)
     return throws
@@ -462,7 +468,9 @@ def _weights_of(
         return
     planes = counterweights.planes or wheels_of(machine)
     for throw in owners:
-        weight = throw.weight(-(throw.rotating + counterweights.share * throw.mass))
+        # the mass at a knuckle pin counts as on the crank pin
+        on_pin = throw.rotating + throw.knuckle_mass
+        weight = throw.weight(-(on_pin + counterweights.share * throw.mass))
         if not planes:
             yield weight
         elif throw.cylinder.masses:

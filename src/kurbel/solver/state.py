@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -43,6 +43,9 @@ from kurbel.solver.chambers import Chambers
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
 from kurbel.solver.vector import Vector
+
+if TYPE_CHECKING:
+    from kurbel.mechanisms.link_rod import LinkedPiston
 
 
 class FrictionMoments(NamedTuple):
@@ -331,6 +334,82 @@ class State(Chambers):
             np.hypot(*pin) * friction.crank_pin, at_crosshead, bearings * friction.journals
         )
 
+    # link rods
+
+    @property
+    def linked_piston(self) -> LinkedPiston:
+        """Its mechanism, of a cylinder with a link rod."""
+        return cast("LinkedPiston", self.mechanism)
+
+    @cached_property
+    def _knuckle_inertia(self) -> Any:
+        """Inertia force −m_k ω² z″ in N of a link rod's mass at its knuckle pin, complex in the own frame."""
+        mass, omega = self.drive.knuckle_mass, self.omega
+        _, acceleration = self.linked_piston.knuckle_motion(self.angle)
+        if omega is None:
+            return 0.0 * acceleration
+        return acceleration * (-mass * omega * omega)
+
+    @property
+    def _knuckle_inertia_on_pin(self) -> Any:
+        """What reaches the crank pin of that force, in N, in the frame of the throw: −D + iT."""
+        return self.linked_piston.force_on_pin(self.angle, self._knuckle_inertia)
+
+    @property
+    def knuckle_inertia_torque(self) -> Number:
+        """Torque −m_k ω² Re(z′* z″) in N m of that force."""
+        speed, _ = self.linked_piston.knuckle_motion(self.angle)
+        torque: Number = (np.conj(speed) * self._knuckle_inertia).real
+        return torque
+
+    @property
+    def knuckle_momentum_rate(self) -> Number:
+        """Rate m_k ω² Im(z* z″) in N m of the moment of momentum of that mass about the shaft."""
+        place = self.linked_piston.knuckle_place(self.angle)
+        rate: Number = -(np.conj(place) * self._knuckle_inertia).imag
+        return rate
+
+    @cached_property
+    def knuckle_force(self) -> Any:
+        """Force Q = −P (1 − i tan ψ) − m_k ω² z″ in N of a link rod on its knuckle pin, complex in the own frame."""
+        if self.P is None:
+            return None
+        sin_psi, cos_psi = self.rod_angle
+        return self._knuckle_inertia - self.along_rod * (1 - 1j * (sin_psi / cos_psi))
+
+    @property
+    def knuckle_moment(self) -> Any:
+        """Moment M_K in N m of that force on the master rod about the crank pin."""
+        if self.knuckle_force is None:
+            return None
+        return self.linked_piston.moment_on_master(self.angle, self.knuckle_force)
+
+    @cached_property
+    def _links_side(self) -> Number:
+        """Side force ΣM_K/(L cos ψ) in N that the link rods take from the guide of a master; 0 without them."""
+        return self._side(self._moment_of_links) if self.drive.links else 0.0
+
+    @property
+    def moment_on_master(self) -> Any:
+        """Moment in N m on the master rod about the crank pin: of a link rod its own, of a master that of its links."""
+        if self.P is None:
+            return None
+        if self.drive.cylinder.link_rod is not None:
+            return self.knuckle_moment
+        return self._moment_of_links if self.drive.links else None
+
+    @cached_property
+    def _moment_of_links(self) -> Number:
+        """Moment ΣM_K in N m of the link rods on this master rod."""
+        moments: Number = 0.0
+        for link in self.drive.links:
+            between = cast("LinkedPiston", link.mechanism).between
+            state = State(link, CrankAngle.of(self.phi - between), self.within - between)
+            moment = state.knuckle_moment
+            if moment is not None:
+                moments = moments + moment
+        return moments
+
     # the guide
 
     @cached_property
@@ -366,7 +445,7 @@ class State(Chambers):
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
         return (
             self.after_steady_friction * sin_psi
-            + (self.drive.guide_weight - self._rod_side) * cos_psi
+            + (self.drive.guide_weight - self._rod_side - self._links_side) * cos_psi
         )
 
     @cached_property
@@ -415,7 +494,7 @@ class State(Chambers):
         if not drive.rubs:
             sin_psi, cos_psi = self.rod_angle
             return self.after_steady_friction * (sin_psi / cos_psi) + (
-                drive.guide_weight - self._rod_side
+                drive.guide_weight - self._rod_side - self._links_side
             )
         below = self.guide_denominator
         locked = below <= 0
@@ -424,6 +503,15 @@ class State(Chambers):
                 raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
             below = np.where(locked, np.nan, below)
         return self.guide_sense / below
+
+    M_knuckle = value(
+        "M_An",
+        "torque",
+        "Moment of the link rods on the master rod about the crank pin, of a link rod its own one",
+        lambda state: state.moment_on_master,
+        extremes=("forces",),
+        called="moment of the link rods on the master rod",
+    )
 
     @property
     def drag(self) -> Number:
@@ -470,6 +558,8 @@ class State(Chambers):
         if radial is None:
             return None
         push = self.along_rod * radial + self._rod_side * self.angle.sin
+        if self.drive.cylinder.link_rod is not None:
+            push = push - self._knuckle_inertia_on_pin.real
         if rod is None:
             return push
         along, across = self.drive.weight_of(rod.pin_mass)
@@ -493,7 +583,12 @@ class State(Chambers):
 
     @cached_property
     def _rod_tangential(self) -> Number:
-        """Contribution to T in N of the couple and the weight at the crank pin of an exact rod; 0 for another."""
+        """Contribution to T in N of the couple and the weight at the crank pin of an exact rod; 0 for another.
+
+        Of a link rod that of its mass at the knuckle pin.
+        """
+        if self.drive.cylinder.link_rod is not None:
+            return self.knuckle_inertia_torque / self.mechanism.crank
         if self.drive.rod is None:
             return 0.0
         along, across = self.drive.weight_of(self.drive.rod.pin_mass)
@@ -610,9 +705,15 @@ def on_crosshead_pin(state: State) -> Vector:
 
 
 def reduced_inertia(state: State) -> Any:
-    """Return the reduced moment of inertia of a cylinder's moving masses in kg m²: m x′² + m_pin R² + I_excess ψ′²."""
+    """Return the reduced moment of inertia of a cylinder's moving masses in kg m²: m x′² + m_pin R² + I_excess ψ′².
+
+    Of a link rod also m_k |z′|² of its mass at the knuckle pin.
+    """
     drive, rod = state.drive, state.drive.rod
     inertia = state.slope * state.slope * drive.mass + drive.pin_inertia
+    if drive.cylinder.link_rod is not None:
+        speed, _ = state.linked_piston.knuckle_motion(state.angle)
+        inertia = inertia + drive.knuckle_mass * np.abs(speed) ** 2
     return (
         inertia if rod is None else inertia + state.rod_slope * state.rod_slope * rod.excess_inertia
     )

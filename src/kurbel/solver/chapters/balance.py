@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -46,6 +46,9 @@ from kurbel.solver.shaft import (
     wheels_of,
 )
 from kurbel.solver.state import State
+
+if TYPE_CHECKING:
+    from kurbel.mechanisms.link_rod import LinkedPiston
 
 _SAMPLES = 256
 """Samples of a revolution for the Fourier analysis of a mechanism; repeatedly four times as many for a short rod, …"""
@@ -130,6 +133,7 @@ def contributions_of(
         turned_back = np.multiply.outer(np.arange(-k, k + 1), lag)
         turned = waves * throw.mass * unit_vector(throw.bank - turned_back)
         contributions.append(Contribution(turned, throw.place))
+    contributions += _of_knuckles(throws, k, count)
     # m_rot R of the throws, and the weights: u n² e^{inφ}
     rotating = [throw.weight(throw.rotating) for throw in throws]
     for weight in (*rotating, *weights):
@@ -137,6 +141,28 @@ def contributions_of(
             waves = np.zeros((2 * k + 1, count), complex)
             waves[k + weight.order] = weight.product * weight.order**2
             contributions.append(Contribution(waves, weight.place))
+    return contributions
+
+
+def _of_knuckles(throws: Sequence[CylinderThrow], k: int, count: int) -> list[Contribution]:
+    """Return −m_k z″(φ − δ) e^{iγ} of the mass of each link rod at its knuckle pin, from order −k to k."""
+    contributions = list[Contribution]()
+    for throw in throws:
+        if not some(throw.knuckle_mass != 0):
+            continue
+        # z″ is complex: its waves forward and backward are not conjugate
+        samples = max(_SAMPLES, 4 * k)
+        degrees: Array = np.arange(samples, dtype=float)[:, None] * (360.0 / samples)
+        linked_piston = cast("LinkedPiston", throw.cylinder.mechanism)
+        _, acceleration = linked_piston.knuckle_motion(CrankAngle.of(degrees))
+        values = np.broadcast_to(acceleration, (samples, count))
+        transformed = np.fft.fft(values, axis=0) / samples
+        orders = np.arange(-k, k + 1)
+        waves = unless_cancelled(transformed[orders], _EPS * np.abs(values).max(axis=0), 1.0)
+        lag = np.broadcast_to(throw.lag, count)
+        turned_back = np.multiply.outer(orders, lag)
+        turned = waves * -throw.knuckle_mass * unit_vector(throw.bank - turned_back)
+        contributions.append(Contribution(turned, throw.place))
     return contributions
 
 
@@ -529,6 +555,8 @@ class MachineBalance(Results):
             """Return dH/dt = m e b in N m, less the couple of an exact rod, as ψ counts against the rotation."""
             drive = state.drive
             moment = state.b * (drive.mass * drive.mechanism.offset)
+            if drive.cylinder.link_rod is not None:
+                moment = moment + state.knuckle_momentum_rate
             return moment - state.rod_couple if drive.rod else moment
 
         if self.effort is None:
@@ -735,4 +763,5 @@ class MachineBalance(Results):
 def changes_angular_momentum(cylinder: CylinderForces) -> bool:
     """Return whether the angular momentum of its reciprocating masses and rod about the shaft varies."""
     drive = cylinder.drive
-    return drive.has_inertia and (some(drive.mechanism.offset != 0) or drive.rod is not None)
+    turns_unevenly = drive.rod is not None or some(drive.knuckle_mass != 0)
+    return drive.has_inertia and (some(drive.mechanism.offset != 0) or turns_unevenly)

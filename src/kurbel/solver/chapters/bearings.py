@@ -57,6 +57,7 @@ FRAMES = {
     "throw": ("K", "its throw outward, of a main bearing from that of crank 1"),
     "engine": ("M", "the stroke line of cylinder 1 outward"),
     "rod": ("S", "the line of the rod, crank pin to crosshead"),
+    "master": ("H", "the line of the master rod, crank pin to its piston"),
 }
 """In which loads are seen: the index of the symbol of their direction, and from where it counts."""
 
@@ -344,7 +345,11 @@ class RodPin(Bearing):
         """The rod turns on the crank pin with 1 + dψ/dφ, on the crosshead pin with dψ/dφ; see `Bearing`."""
         state, pieces = self._own.samples, self._common
         _, cos_psi = state.rod_angle or (0.0, 1.0)
-        slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
+        mechanism = state.drive.mechanism
+        slope = formulas.rod_slope(state.angle.cos, cos_psi, mechanism.lam)
+        if state.drive.cylinder.link_rod is not None:
+            # ψ_l does not follow from the crank pin, and τ = −ψ_l
+            slope = -state.linked_piston.coupler_at(state.angle).slope
         rate = 1 + slope if self._pin == "crank_pin" else slope
         return resampled(pieces, self._own, rate).real[0]
 
@@ -363,6 +368,71 @@ class RodPin(Bearing):
             if work is None
             else work * (self.machine.revolutions // self._own.drive.revolutions)
         )
+
+
+class MasterPin(RodPin):
+    """The crank pin of a master rod, which carries the forces of its link rods, too."""
+
+    def __init__(
+        self, name: str, own: CylinderForces, links: Sequence[CylinderForces], size: Size
+    ) -> None:
+        super().__init__(name, own, size, "crank_pin")
+        self._links = tuple(links)
+        cycle = 360.0 * self.machine.revolutions
+        parts = [(cylinder.pieces, position(cylinder)) for cylinder in (own, *links)]
+        self._common = common(parts, cycle)
+
+    def _seen_from(self, throw: ComplexArray, degrees: Array) -> Frames:
+        """Return a load in N from the frame of the throw in every frame; degrees: of the own crank."""
+        angle = CrankAngle.of(degrees)
+        rod_angle = self._own.mechanism.rod_angle(angle)
+        assert rod_angle is not None
+        sin_psi, cos_psi = rod_angle
+        line = throw * (angle.cos + 1j * angle.sin)
+        return {
+            "throw": throw,
+            "engine": line * self._bank,
+            "rod": line * (cos_psi + 1j * sin_psi),
+        }
+
+    def _frames(self, degrees: Array, within: Array) -> Frames:
+        load: Force = 0j
+        for cylinder in (self._own, *self._links):
+            load = load - np.conj(pin_load(state_at(cylinder, degrees, within)))
+        return self._seen_from(load, degrees - position(self._own))
+
+    def _samples(self) -> Sequence[ComplexArray]:
+        load: Force = 0j
+        for cylinder in (self._own, *self._links):
+            (on_pin_of_rod,) = resampled(self._common, cylinder, pin_load(cylinder.samples))
+            load = load - np.conj(on_pin_of_rod)
+        frames = self._seen_from(load, self._common.degrees - position(self._own))
+        return [frames[self.journal], frames[self.shell]]
+
+
+class KnucklePin(RodPin):
+    """The knuckle pin of a link rod, at rest in the master rod; the load is that of the link rod on it."""
+
+    def __init__(self, name: str, own: CylinderForces) -> None:
+        super().__init__(name, own, (None, None), "knuckle_pin")
+        self.journal = "master"
+
+    def _seen(self, state: State, bank: Any) -> Frames:
+        """Return the load in each frame; see `RodPin`."""
+        sin_psi, cos_psi = state.rod_angle or (0.0, 1.0)
+        force = state.knuckle_force
+        master = state.linked_piston.master_direction(state.angle)
+        return {
+            "engine": force * bank,
+            "rod": force * (cos_psi + 1j * sin_psi),
+            "master": force * np.conj(master),
+        }
+
+    def _turning(self) -> Array:
+        """The link rod turns on its knuckle pin with ψ_l′ − ψ′; see `Bearing`."""
+        state = self._own.samples
+        rate = state.linked_piston.turning_on_master(state.angle)
+        return resampled(self._common, self._own, rate).real[0]
 
 
 class MainBearing(Bearing):
@@ -570,10 +640,18 @@ class ShaftBearings:
         friction, shaft = own.drive.cylinder.friction, self.machine.crankshaft
         of = f" of {own.drive.name}" if len(self._cylinders) > 1 else ""
         pin: Size = friction.crank_pin_diameter if friction else None, None
-        if shaft:  # rods on one pin have equal parts of its length
+        links = [forces for forces in self._cylinders if _hangs_on(forces, own)]
+        if own.drive.cylinder.link_rod is not None:
+            yield KnucklePin(f"knuckle pin{of}", own)
+        elif links:
+            if shaft:
+                pin = shaft.pin_diameter, shaft.pin_length
+            yield MasterPin(f"crank pin{of}", own, links, pin)
+        elif shaft:  # rods on one pin have equal parts of its length
             rods = len(self.line.throw_of(number).cylinders) if self.line else 1
             pin = shaft.pin_diameter, shaft.pin_length / rods
-        yield RodPin(f"crank pin{of}", own, pin, "crank_pin")
+        if not links and own.drive.cylinder.link_rod is None:
+            yield RodPin(f"crank pin{of}", own, pin, "crank_pin")
         crosshead = (
             (friction.crosshead_pin_diameter, friction.crosshead_pin_length)
             if friction
@@ -600,6 +678,12 @@ class ShaftBearings:
             "AB" if self.line.bearings == 2 else range(1, self.line.bearings + 1)
         ):
             yield MainBearing(f"bearing {name}", number, self.line, self._cylinders, size)
+
+
+def _hangs_on(forces: CylinderForces, master: CylinderForces) -> bool:
+    """Return whether a cylinder has its link rod on the master rod of another one."""
+    link_rod = forces.drive.cylinder.link_rod
+    return link_rod is not None and link_rod.master == master.drive.name
 
 
 def _loads_pins(forces: CylinderForces) -> bool:
