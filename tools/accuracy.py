@@ -142,7 +142,7 @@ For the first built-in machine, a steam engine with L/R = 5:
 The smallest error of the data is {power(min(data) / max(own))} times the largest of the arithmetic: a difference from a
 measurement comes from dead centre, indicator or model. The largest error in all scenes of motion, forces and energy is
 {worst(report)}. References are the formulas of the textbooks in 40 digits of mpmath, integrated
-between the corners of the cards by Gauss's rule, whose pieces are halved until 25 digits agree.
+between the corners of the cards by Gauss's rule, whose pieces are halved until 15 digits agree; the halves then have 30.
 
 ## What it costs
 
