@@ -14,7 +14,7 @@ from representative import CONFIGS
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
 PRESSURE = "constant: {expansion: 5 bar, compression: 1 bar}"
-GAUGE = "indicator: {head_end: {trace: {unit: bar, points: [[0, 1], [180, 5], [360, 1]]}}}\n"
+GAUGE = "indicator: {role: engine, head_end: {trace: {unit: bar, points: [[0, 1], [180, 5], [360, 1]]}}}\n"
 
 
 def called(text: str, *arguments: str) -> tuple[int, str, str]:
