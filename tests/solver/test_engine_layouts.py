@@ -339,6 +339,30 @@ def test_check_names_the_master_rod(tmp_path: Path) -> None:
     assert "9 rods are put on the crank pin itself" in run("check", path).output
 
 
+@pytest.mark.parametrize(
+    ("machine", "right", "length", "is_doubted"),
+    [
+        # L = 320 mm, k = 81.5 mm: 15 % of L is 48 mm
+        (V_LINK, "length: 238.5 mm", "length: 286.4 mm", False),
+        (V_LINK, "length: 238.5 mm", "length: 286.6 mm", True),
+        (V_LINK, "length: 238.5 mm", "length: 190.6 mm", False),
+        (V_LINK, "length: 238.5 mm", "length: 190.4 mm", True),
+        (V_LINK, "length: 238.5 mm, ", "", False),
+        # the length of the master rod, written once more
+        (RADIAL, "length: 214 mm", "length: 272 mm", True),
+        (RADIAL, "length: 214 mm", "length: 214 mm", False),
+    ],
+)
+def test_a_link_rod_as_long_as_its_master_is_doubted(
+    machine: str, right: str, length: str, is_doubted: bool, tmp_path: Path
+) -> None:
+    assert right in machine
+    path = tmp_path / "engine.yaml"
+    path.write_text(machine.replace(right, length), encoding="utf-8")
+    printed = run("check", path).output
+    assert ("is 'length' the link rod's own?" in printed) is is_doubted
+
+
 def test_the_work_of_link_rods_is_that_of_their_pistons() -> None:
     """Virtual work: of each cylinder T R is P x′ less what its masses take; over a cycle only the gas works."""
     case = Case(loads(V_LINK))
@@ -381,6 +405,30 @@ def test_a_sweep_of_a_link_rod_is_the_machines_one_by_one(tmp_path: Path) -> Non
         _, length, force = row.split(",")[:3]
         single = loads(V_LINK.replace("238.5 mm", f"{length} m"))
         assert float(force) == pytest.approx(Case(single).balance.F_free_max.value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("stroke", "rod", "drop", "opens_at", "tolerance"),
+    [
+        # torqsoft.net, piston position: both its examples, printed to 0.01
+        (54.5, 110.0, 25.6, 79.51, 0.005),
+        (54.5, 110.0, 27.31, 83.0, 0.02),
+        # mopedmasters.com, exhaust timing, chart of the Puch E50: 180 deg less half the duration, printed to 0.1 deg
+        (43.0, 90.0, 21.5, 180 - 193.7 / 2, 0.026),
+        (43.0, 90.0, 24.0, 180 - 180.6 / 2, 0.026),
+        (43.0, 90.0, 26.0, 180 - 169.8 / 2, 0.026),
+        (43.0, 90.0, 28.0, 180 - 158.6 / 2, 0.026),
+    ],
+)
+def test_ports_open_where_published_tables_have_them(
+    stroke: float, rod: float, drop: float, opens_at: float, tolerance: float, tmp_path: Path
+) -> None:
+    path = tmp_path / "two-stroke.yaml"
+    path.write_text(f"{{stroke: {stroke} mm, rod: {rod} mm, speed: 9000 rpm}}", encoding="utf-8")
+    printed = answer("motion", path, "--where", f"x = {drop} mm")
+    opening, closing = column(printed["cylinders"][0]["columns"], "phi")
+    assert opening == pytest.approx(opens_at, abs=tolerance)
+    assert closing == pytest.approx(360 - opens_at, abs=tolerance)
 
 
 SLIPS: tuple[tuple[str, Callable[..., Any], str, str], ...] = (

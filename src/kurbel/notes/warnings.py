@@ -57,6 +57,7 @@ def machine_notes(case: Case, of_forces: bool = False) -> tuple[Note, ...]:
     add(_fluctuation_warnings(machine), command="flywheel")
     for cylinder in machine.cylinders:
         add(cylinder_doubts(machine, cylinder), cylinder.name)
+        add(_link_rod_warnings(machine, cylinder), cylinder.name)
     add(pin_warnings(machine))
 
     # measurements and results, where there are forces
@@ -122,6 +123,25 @@ def _fluctuation_warnings(machine: Machine) -> Iterator[str]:
             f"a wanted fluctuation of {delta:g} lets the speed vary "
             f"between {1 - delta / 2:g} and {1 + delta / 2:g} "
             "times its mean; those of the books are 1/5 to 1/300: is it right?"
+        )
+
+
+_LARGEST_LINK_DIFFERENCE = 0.15
+"""Of the master rod, by which link rod and knuckle radius together may be longer or shorter."""
+
+
+def _link_rod_warnings(machine: Machine, cylinder: Cylinder) -> Iterator[str]:
+    """Yield a warning on a link rod that puts its piston far from where that of the master is."""
+    link_rod = cylinder.link_rod
+    if link_rod is None or link_rod.length is None:
+        return
+    (master,) = (other for other in machine.cylinders if other.name == link_rod.master)
+    L = master.mechanism.rod_length
+    reach = link_rod.length + link_rod.knuckle_radius
+    if abs(reach - L) > _LARGEST_LINK_DIFFERENCE * L:
+        yield (
+            f"link rod and knuckle radius together are {show(reach, 'length')}, "
+            f"the master rod {show(L, 'length')}: is 'length' the link rod's own?"
         )
 
 
