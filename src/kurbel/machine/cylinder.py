@@ -283,16 +283,18 @@ def pin_lag(cylinder: Cylinder, first: Cylinder) -> float:
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
     """Yield the rule that no two cylinders are at the same place along the shaft and on the same stroke line."""
     message = "is at the place of '{other}', {place:length} along the shaft, on the same stroke line; give another"
-    for index, one in enumerate(cylinders):
+    for index, cylinder in enumerate(cylinders):
         rules = []
         for other in cylinders[:index]:
-            if one.axial_position is not None and other.axial_position is not None:
-                same = np.abs(one.axial_position - other.axial_position) < 1e-9
-                same = same & np.equal(np.round(one.bank_angle - other.bank_angle, 6) % 360.0, 0)
-                numbers = {"other": other.name, "place": one.axial_position}
-                place = ("cylinders", index, "axial_position")
+            if cylinder.axial_position is not None and other.axial_position is not None:
+                same = np.abs(cylinder.axial_position - other.axial_position) < 1e-9
+                same = same & np.equal(
+                    np.round(cylinder.bank_angle - other.bank_angle, 6) % 360.0, 0
+                )
+                numbers = {"other": other.name, "place": cylinder.axial_position}
+                path = ("cylinders", index, "axial_position")
                 rules.append(
-                    Rule(place, same, f"{message} 'axial_position' or 'bank_angle'", numbers)
+                    Rule(path, same, f"{message} 'axial_position' or 'bank_angle'", numbers)
                 )
         yield from first_of(iter(rules))
 
@@ -334,8 +336,11 @@ def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
         )
         yield Rule("moment", moment is not None, to_and_fro)
         return
-    given = {"bore": cylinder.pistons or None, **{key: vars(cylinder)[key] for key in _SLIDING}}
-    for key, value in given.items():
+    values_by_key = {
+        "bore": cylinder.pistons or None,
+        **{key: vars(cylinder)[key] for key in _SLIDING},
+    }
+    for key, value in values_by_key.items():
         yield Rule(
             key,
             value is not None,
@@ -372,8 +377,8 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
     for key in friction.of_pins:
         without = not has_rod and (key == "crosshead_pin" or not mechanism.rubs)
         yield Rule(key, without, f"{kind} has no connecting rod; leave '{key}' out")
-    for key, given in (("block", friction.block), ("guides", friction.guides)):
-        without = given is not None and not mechanism.rubs
+    for key, coefficient in (("block", friction.block), ("guides", friction.guides)):
+        without = coefficient is not None and not mechanism.rubs
         yield Rule(key, without, f"{kind} is no scotch-yoke; leave '{key}' out")
     if mechanism.rubs and friction.guides is not None:
         apart = mechanism.guide_distance
@@ -388,14 +393,14 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
 def _of_events(cylinder: Cylinder) -> Iterator[Rule]:
     """A steam card has its events from the valve, or its own; the valve is that of the cylinder's own piston."""
     for number, piston in enumerate(cylinder.pistons):
-        place = ("tandem", number - 1, "indicator") if number else ("indicator",)
+        path = ("tandem", number - 1, "indicator") if number else ("indicator",)
         chambers = piston.chambers
         if chambers.get("crank_end") is chambers.get("head_end"):  # mirrored
             chambers.pop("crank_end", None)
         for end, card in chambers.items():
             valve = None if number else cylinder.valve
             shuts_early = None if valve is None else valve.compresses
-            yield from (rule.below(*place, end) for rule in card.rules_of_events(shuts_early))
+            yield from (rule.below(*path, end) for rule in card.rules_of_events(shuts_early))
 
 
 def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:
@@ -426,17 +431,19 @@ _PLACE = (
 """Keys of a cylinder on its place along the shaft, and on what the shaft carries there."""
 
 
-def work_alike(one: Cylinder, other: Cylinder) -> bool:
+def work_alike(cylinder: Cylinder, other: Cylinder) -> bool:
     """Return whether two cylinders have the same motion and forces, at whatever place along the shaft."""
     keys = (field.name for field in fields(Cylinder) if field.name not in _PLACE)
-    return all(_same(vars(one)[key], vars(other)[key]) for key in keys)
+    return all(_same(vars(cylinder)[key], vars(other)[key]) for key in keys)
 
 
-def _same(one: object, other: object) -> bool:
-    if one is other or type(one) is not type(other):
-        return one is other
-    if is_dataclass(one) and not isinstance(one, type):
-        return all(_same(vars(one)[field.name], vars(other)[field.name]) for field in fields(one))
-    if isinstance(one, tuple) and isinstance(other, tuple):
-        return len(one) == len(other) and all(map(_same, one, other))
-    return bool(np.array_equal(np.asarray(one), np.asarray(other)))
+def _same(value: object, other: object) -> bool:
+    if value is other or type(value) is not type(other):
+        return value is other
+    if is_dataclass(value) and not isinstance(value, type):
+        return all(
+            _same(vars(value)[field.name], vars(other)[field.name]) for field in fields(value)
+        )
+    if isinstance(value, tuple) and isinstance(other, tuple):
+        return len(value) == len(other) and all(map(_same, value, other))
+    return bool(np.array_equal(np.asarray(value), np.asarray(other)))

@@ -119,15 +119,15 @@ def _obstacle(
     master = cylinders[names.index(link.master)]
     if master.link_rod is not None:
         return ("link_rod", "master"), f"'{link.master}' is on a link rod itself"
-    own = cylinder.mechanism
+    mechanism = cylinder.mechanism
     of_master = master.mechanism
-    if type(own) is not SliderCrank or type(of_master) is not SliderCrank:
+    if type(mechanism) is not SliderCrank or type(of_master) is not SliderCrank:
         return ("link_rod",), "both cylinders of a link rod are slider-cranks"
     if np.any(np.isinf(of_master.rod)):
         return ("link_rod", "master"), "an infinite rod carries no knuckle pin"
-    if np.any(np.not_equal(own.crank, of_master.crank)):
+    if np.any(np.not_equal(mechanism.crank, of_master.crank)):
         return ("crank",), "it is that of its master; leave it out, or write 'like: MASTER'"
-    if np.any(np.not_equal(own.rod, of_master.rod)):
+    if np.any(np.not_equal(mechanism.rod, of_master.rod)):
         return ("rod",), "it is that of its master; the rod of its own is 'link_rod.length'"
     if np.any(np.equal((cylinder.bank_angle - master.bank_angle) % 360.0, 0.0)):
         return ("bank_angle",), "a link rod has a stroke line of its own; this is its master's"

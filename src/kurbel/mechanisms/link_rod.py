@@ -275,11 +275,11 @@ class LinkedPiston(Mechanism):
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return crank, the arm to the knuckle pin, link rod and piston, whose line is e from the shaft."""
-        place = self._knuckle_at(angle).place
+        knuckle = self._knuckle_at(angle).place
         far = float(self._reach)
         offset = self.own_offset
         joints: dict[str, Any] = {
-            "knuckle": (place.real, place.imag),
+            "knuckle": (knuckle.real, knuckle.imag),
             "crosshead": (far - self.coordinate(angle), offset),
         }
         return Sketch.of_crank(

@@ -13,9 +13,8 @@ from kurbel.arrays import Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
-from kurbel.machine.batch import taken
 from kurbel.machine.cylinder import crank_lag
-from kurbel.machine.parts import GasOnRings
+from kurbel.machine.parts import GasOnRings, Rings
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas
@@ -97,83 +96,90 @@ class Drive:
         self.cycle = 360.0 * self.revolutions
         self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
 
-        masses, mechanism = cylinder.masses, self.mechanism
-        length, rod = mechanism.rod_length, masses.connecting_rod if masses else None
-        exact = rod is not None and rod.exact
-        self.mass: Number = masses.at_crosshead(length) if masses else 0.0
-        self.pin_inertia: Number = masses.at_pin(length) * mechanism.crank**2 if masses else 0.0
-        self.rod = (
-            ExactRod(rod.at_pin(length), rod.at_crosshead(length), rod.excess_inertia(length))
-            if rod and exact
-            else None
-        )
-        self.rod_centrifugal_force: Number = (
-            self.centrifugal(rod.mass * (1 - rod.share)) if rod and not exact else 0.0
-        )
-        # of a link rod at its knuckle pin
-        self.knuckle_mass: Number = 0.0
-        if cylinder.link_rod is not None:
-            self.knuckle_mass = cylinder.link_rod.knuckle_mass
-        self.has_inertia = masses is not None and self.omega is not None
-
-        inclination = machine.inclination_of(cylinder)
-        self._incline = None if inclination is None else CrankAngle.of(inclination)
-        self.down = self._incline and self._incline.cos
-        self.weight = self.weight_of(self.mass) if self._incline and masses else None
-        self.guide_weight: Number = self.weight[1] if self.weight else 0.0
-
-        stroke, self.resistance = mechanism.stroke, cylinder.ram_force or cylinder.moment
-        self.resistance_work: Number | None = None
-        if self.resistance:
-            work, back = self.resistance.work, self.resistance.back
-            strokes = work if mechanism.turns else work + back
-            self.resistance_work = -strokes * stroke * self.revolutions
-        self.path: Number = 2 * stroke * self.revolutions
+        self._take_masses()
+        self.has_inertia = cylinder.masses is not None and self.omega is not None
+        self._take_weight()
+        self._take_resistance()
         self.has_gas = any(piston.indicator for piston in cylinder.pistons)
         self.has_force = bool(self.has_gas or self.has_inertia or self.weight or self.resistance)
+        self._take_friction()
 
-        friction = cylinder.friction
-        given = (friction.crosshead, friction.constant) if friction else (None, None)
-        self.crosshead_friction, constant = (0.0 if one is None else one for one in given)
-        self.rubs = some(self.crosshead_friction != 0)
-        block, guides = (friction.block, friction.guides) if friction else (None, None)
-        self.yoke_friction = (0.0 if block is None else block, 0.0 if guides is None else guides)
-        self.yoke_rubs = any(some(one != 0) for one in self.yoke_friction)
-        guide, rings = (friction.guide, friction.rings) if friction else (None, None)
-        self.guide_area = guide.length * guide.width if guide else None
+    def _take_masses(self) -> None:
+        """Set the masses that move: to and fro, at the crank pin, of an exact rod, and at a knuckle pin."""
+        masses, length = self.cylinder.masses, self.mechanism.rod_length
+        self.mass: Number = 0.0
+        self.pin_inertia: Number = 0.0
+        self.rod: ExactRod | None = None
+        self.rod_centrifugal_force: Number = 0.0
+        self.knuckle_mass: Number = 0.0
+        if self.cylinder.link_rod is not None:
+            self.knuckle_mass = self.cylinder.link_rod.knuckle_mass
+        if not masses:
+            return
+        self.mass = masses.at_crosshead(length)
+        self.pin_inertia = masses.at_pin(length) * self.mechanism.crank**2
+        rod = masses.connecting_rod
+        if rod is not None and rod.exact:
+            self.rod = ExactRod(
+                rod.at_pin(length), rod.at_crosshead(length), rod.excess_inertia(length)
+            )
+        elif rod is not None:
+            self.rod_centrifugal_force = self.centrifugal(rod.mass * (1 - rod.share))
+
+    def _take_weight(self) -> None:
+        """Set the weight along the stroke line and on the guide, where the inclination is known."""
+        inclination = self.machine.inclination_of(self.cylinder)
+        self._incline = None if inclination is None else CrankAngle.of(inclination)
+        self.down = self._incline and self._incline.cos
+        self.weight: tuple[Number, Number] | None = None
+        self.guide_weight: Number = 0.0
+        if self._incline and self.cylinder.masses:
+            self.weight = self.weight_of(self.mass)
+            self.guide_weight = self.weight[1]
+
+    def _take_resistance(self) -> None:
+        """Set what the output works against, its work per cycle in J, and the path of the output per cycle in m."""
+        stroke = self.mechanism.stroke
+        self.resistance = self.cylinder.ram_force or self.cylinder.moment
+        self.resistance_work: Number | None = None
+        self.path: Number = 2 * stroke * self.revolutions
+        if self.resistance:
+            forces = self.resistance.work
+            if not self.mechanism.turns:
+                forces = forces + self.resistance.back
+            self.resistance_work = -forces * stroke * self.revolutions
+
+    def _take_friction(self) -> None:
+        """Set coefficients of what slides, and forces of rings and of `friction: constant` in N."""
+        friction = self.cylinder.friction
+        self.crosshead_friction: Number = 0.0
+        self.yoke_friction: tuple[Number, Number] = (0.0, 0.0)
+        self.guide_area: Number | None = None
         self.ring_force: Number = 0.0
         self.ring_surface: Number = 0.0
-        if rings:
-            surface: Number = (
-                rings.count * math.pi * cylinder.pistons[0].bore * rings.height * rings.coefficient
+        self.constant_friction: Number = 0.0
+        if friction:
+            self.crosshead_friction = _or_none_at_all(friction.crosshead)
+            self.yoke_friction = (
+                _or_none_at_all(friction.block),
+                _or_none_at_all(friction.guides),
             )
-            if isinstance(rings.pressure, GasOnRings):
-                self.ring_surface = surface * rings.pressure.gas
-            else:
-                self.ring_force = surface * rings.pressure
-        self.constant_friction: Number = self.ring_force + constant
+            if friction.guide:
+                self.guide_area = friction.guide.length * friction.guide.width
+            if friction.rings:
+                self._take_rings(friction.rings)
+            self.constant_friction = self.ring_force + _or_none_at_all(friction.constant)
+        self.rubs = some(self.crosshead_friction != 0)
+        self.yoke_rubs = any(some(coefficient != 0) for coefficient in self.yoke_friction)
 
-    def taken(self, index: Indices) -> Drive:
-        """Return a copy with the numbers of these machines, one for every angle or piece (n,)."""
-        if self.count is None:
-            return self
-        other = Drive(taken(self.machine, index), taken(self.cylinder, index), self.count, index)
-        other.gas, other.driving, other.driven, other.pumping = (
-            self.gas,
-            self.driving,
-            self.driven,
-            self.pumping,
-        )
-        return other
-
-    @cached_property
-    def links(self) -> tuple[Drive, ...]:
-        """The cylinders whose link rods are on the master rod of this one; of many machines with their numbers."""
-        links = []
-        for cylinder in self.machine.cylinders:
-            if cylinder.link_rod is not None and cylinder.link_rod.master == self.name:
-                links.append(Drive(self.machine, cylinder, self.count, self.index))
-        return tuple(links)
+    def _take_rings(self, rings: Rings) -> None:
+        """Set the force in N of the rings by their spring, or its ratio to the pressure in m² by the gas behind them."""
+        bore = self.cylinder.pistons[0].bore
+        surface: Number = rings.count * math.pi * bore * rings.height * rings.coefficient
+        if isinstance(rings.pressure, GasOnRings):
+            self.ring_surface = surface * rings.pressure.gas
+        else:
+            self.ring_force = surface * rings.pressure
 
     @property
     def pieces(self) -> Pieces:
@@ -262,21 +268,17 @@ class Drive:
         if friction is None:
             return None
         coefficients = (friction.crank_pin, friction.crosshead_pin, friction.journals)
-        if not any(
-            coefficient is not None and some(coefficient != 0) for coefficient in coefficients
-        ):
+        if not any(some(_or_none_at_all(coefficient) != 0) for coefficient in coefficients):
             return None
         pin, journal = friction.crank_pin_diameter, friction.journal_diameter
         if self.mechanism.rubbing_pin is not None:
             pin = self.mechanism.rubbing_pin
-        given = (
-            (friction.crank_pin, shaft.pin_diameter if shaft and pin is None else pin),
-            (friction.crosshead_pin, friction.crosshead_pin_diameter),
-            (friction.journals, shaft.journal_diameter if shaft and journal is None else journal),
-        )
-        at_pin, at_crosshead, at_journals = (
-            0.0 if f is None or d is None else f * d / 2 for f, d in given
-        )
+        if shaft:
+            pin = shaft.pin_diameter if pin is None else pin
+            journal = shaft.journal_diameter if journal is None else journal
+        at_pin = _moment_arm(friction.crank_pin, pin)
+        at_crosshead = _moment_arm(friction.crosshead_pin, friction.crosshead_pin_diameter)
+        at_journals = _moment_arm(friction.journals, journal)
         line = None
         if shaft:
             from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
@@ -292,6 +294,16 @@ class Drive:
             f"{self.name}: the crosshead locks itself near φ = {degrees % 360:.4g}°, where the machine is driven "
             f"and f tan ψ ≥ 1 (f = {f:g}); a driven machine needs (R + |e|)/L < 1/√(1 + f²) = {bound:.6g}"
         )
+
+
+def _or_none_at_all(coefficient: Number | None) -> Number:
+    """Return a coefficient or force of friction, 0 where it is not given."""
+    return 0.0 if coefficient is None else coefficient
+
+
+def _moment_arm(f: Number | None, diameter: Number | None) -> Number:
+    """Return f d/2 in m, the moment of friction over the load; 0 where one of both is not given."""
+    return 0.0 if f is None or diameter is None else f * diameter / 2
 
 
 def any_of(conditions: Iterable[Truth]) -> Truth:

@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array, Indices, Number
+from kurbel.arrays import Array, Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
 from kurbel.numerics.arithmetic import some, total
@@ -128,18 +128,23 @@ class State(Chambers):
         """
         drive = self.drive
         # tandem pistons are on the rod itself, without a lever
-        tandem = [
-            False if gas is drive.own_gas else gas.piston.lever_ratio == 1 for gas in drive.gas
-        ]
-        force = self.force_of(tandem) if some(any_of(tandem)) else None
+        tandem = list[Truth]()
+        for gas in drive.gas:
+            is_own = gas is drive.own_gas
+            tandem.append(False if is_own else gas.piston.lever_ratio == 1)
+        if not some(any_of(tandem)):
+            return None
+        force = self.force_of(tandem)
         masses = drive.cylinder.masses.pistons if drive.cylinder.masses else ()
         pistons = drive.cylinder.pistons
         if force is None or len(masses) != len(pistons):
             return force
-        carried = total(
-            *(mass * (one.lever_ratio == 1) for mass, one in zip(masses[1:], pistons[1:]))
-        )
-        force = force - self.b * carried if drive.has_inertia else force
+
+        # with the masses of those in tandem
+        on_rod = [mass * (piston.lever_ratio == 1) for mass, piston in zip(masses[1:], pistons[1:])]
+        carried = total(*on_rod)
+        if drive.has_inertia:
+            force = force - self.b * carried
         return force + drive.weight_of(carried)[0]
 
     # the piston force
@@ -205,8 +210,9 @@ class State(Chambers):
         resistance = self.drive.resistance
         if resistance is None:
             return None
-        working = self.direction == (1.0 if self.mechanism.works_outward else -1.0)
-        return self.filled(-self.direction * np.where(working, resistance.work, resistance.back))
+        working_direction = 1.0 if self.mechanism.works_outward else -1.0
+        works = self.direction == working_direction
+        return self.filled(-self.direction * np.where(works, resistance.work, resistance.back))
 
     def rod_load(self, crosshead: bool = True) -> Array | None:
         """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft (API 618).
@@ -214,17 +220,14 @@ class State(Chambers):
         The connecting rod is left out. crosshead: whether the crosshead is included; without it its mass must be known.
         None without a gas force, and in a mechanism without a connecting rod, where it would be P.
         """
-        masses = self.drive.cylinder.masses
-        unknown = not crosshead and (masses is None or masses.crosshead is None)
-        if unknown or self.P_gas is None or not self.mechanism.has_rod:
+        if self.P_gas is None or not self.mechanism.has_rod:
             return None
-        mass: Number = 0.0
-        if masses:
-            mass = (
-                masses.parts
-                if crosshead or masses.crosshead is None
-                else masses.parts - masses.crosshead
-            )
+        masses = self.drive.cylinder.masses
+        mass: Number = masses.parts if masses else 0.0
+        if not crosshead:
+            if masses is None or masses.crosshead is None:
+                return None
+            mass = masses.parts - masses.crosshead
         moved = self.P_gas - self.b * mass if self.drive.has_inertia else self.P_gas
         return moved + self.drive.weight_of(mass)[0]
 
@@ -288,20 +291,20 @@ class State(Chambers):
     @cached_property
     def _friction_side(self) -> Number:
         """Side force in N by friction in both pins of the rod, or of the block in a Scotch yoke; 0 without friction."""
-        block, _ = self.drive.yoke_friction
         if self.rod_angle is None:
-            return np.abs(self.along_rod) * self._forward * block if self.drive.yoke_rubs else 0.0
+            if not self.drive.yoke_rubs:
+                return 0.0
+            block, _ = self.drive.yoke_friction
+            return np.abs(self.along_rod) * self._forward * block
         rubbing = self.rubbing
         return 0.0 if rubbing is None else self._side(rubbing.at_crank + rubbing.at_crosshead)
 
     @cached_property
     def _rod_side(self) -> Number:
         """Side force in N of all couples on the rod: inertia couple of an exact rod, and friction in its pins."""
-        return (
-            self._friction_side
-            if self.drive.rod is None
-            else self._side(self.rod_couple) + self._friction_side
-        )
+        if self.drive.rod is None:
+            return self._friction_side
+        return self._side(self.rod_couple) + self._friction_side
 
     @cached_property
     def rubbing(self) -> FrictionMoments | None:
@@ -310,7 +313,8 @@ class State(Chambers):
         The journals carry the force on the crank pin, distributed by the statics of the crankshaft if its lengths are
         given. Where several cylinders share a throw, each is assigned an equal part of its bearing loads.
         """
-        drive, friction = self.drive, self.drive.pin_friction if self.pin_friction else None
+        drive = self.drive
+        friction = drive.pin_friction if self.pin_friction else None
         if friction is None or self.P is None:
             return None
         pin = on_pin(self.without_pin_friction)
@@ -325,14 +329,12 @@ class State(Chambers):
             rods[throw.cylinders.index(cylinder)] = count * pin.complex
             reactions = friction.line.reactions(throw, rods, drive.cylinder, self.angle)
             bearings = sum(np.abs(force) for force in reactions) / count
+        at_crank = np.hypot(*pin) * friction.crank_pin
         at_crosshead: Number = 0.0
         if self.rod_angle is not None:  # the rod turns by −dψ, which friction opposes
-            at_crosshead = np.hypot(*on_crosshead_pin(self.without_pin_friction)) * (
-                self._forward * friction.crosshead_pin
-            )
-        return FrictionMoments(
-            np.hypot(*pin) * friction.crank_pin, at_crosshead, bearings * friction.journals
-        )
+            load = np.hypot(*on_crosshead_pin(self.without_pin_friction))
+            at_crosshead = load * (self._forward * friction.crosshead_pin)
+        return FrictionMoments(at_crank, at_crosshead, bearings * friction.journals)
 
     # link rods
 
@@ -416,21 +418,19 @@ class State(Chambers):
     def pressure_difference(self) -> Number:
         """Pressure difference in Pa across the cylinder's own piston, head end less crank end."""
         gas = self.drive.own_gas
-        head, crank = (
-            self.pressure(end) if end else 0.0
-            for end in ((gas.head, gas.crank) if gas else (None, None))
-        )
+        if gas is None:
+            return 0.0
+        head: Number = self.pressure(gas.head) if gas.head else 0.0
+        crank: Number = self.pressure(gas.crank) if gas.crank else 0.0
         return head - crank
 
     @cached_property
     def steady_friction(self) -> Number:
         """Friction force in N of the piston rings and of `friction: constant`, which are independent of N."""
         drive = self.drive
-        by_gas = (
-            np.abs(self.pressure_difference) * drive.ring_surface
-            if some(drive.ring_surface != 0)
-            else 0.0
-        )
+        if not some(drive.ring_surface != 0):
+            return drive.constant_friction
+        by_gas = np.abs(self.pressure_difference) * drive.ring_surface
         return drive.constant_friction + by_gas
 
     @cached_property
@@ -489,20 +489,20 @@ class State(Chambers):
         if self.P is None:
             return None
         if self.rod_angle is None:
-            known = self.mechanism.known_across and (drive.weight or drive.yoke_rubs)
-            return self.filled(drive.guide_weight - self._friction_side) if known else None
+            if not self.mechanism.known_across or not (drive.weight or drive.yoke_rubs):
+                return None
+            return self.filled(drive.guide_weight - self._friction_side)
         if not drive.rubs:
             sin_psi, cos_psi = self.rod_angle
-            return self.after_steady_friction * (sin_psi / cos_psi) + (
-                drive.guide_weight - self._rod_side - self._links_side
-            )
-        below = self.guide_denominator
-        locked = below <= 0
-        if locked.any():
+            of_couples = drive.guide_weight - self._rod_side - self._links_side
+            return self.after_steady_friction * (sin_psi / cos_psi) + of_couples
+        denominator = self.guide_denominator
+        is_locked = denominator <= 0
+        if is_locked.any():
             if drive.index is None:
-                raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
-            below = np.where(locked, np.nan, below)
-        return self.guide_sense / below
+                raise NoSolutionError(drive.locks(float(self.phi[is_locked][0])))
+            denominator = np.where(is_locked, np.nan, denominator)
+        return self.guide_sense / denominator
 
     M_knuckle = value(
         "M_An",
@@ -521,9 +521,9 @@ class State(Chambers):
     @property
     def crosshead_drag(self) -> Number:
         """Crosshead friction f |N| in N, magnitude."""
-        return (
-            self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
-        )
+        if not self.drive.rubs:
+            return 0.0
+        return self.N * (self.guide_side * self.drive.crosshead_friction)
 
     p_guide = value(
         "p_g",
@@ -554,7 +554,8 @@ class State(Chambers):
 
         R 302; for an exact rod less the centrifugal force of its mass at the crank pin, with its couple and weight.
         """
-        radial, rod = None if self.P is None else self.mechanism.radial(self.posed), self.drive.rod
+        rod = self.drive.rod
+        radial = None if self.P is None else self.mechanism.radial(self.posed)
         if radial is None:
             return None
         push = self.along_rod * radial + self._rod_side * self.angle.sin
@@ -563,11 +564,8 @@ class State(Chambers):
         if rod is None:
             return push
         along, across = self.drive.weight_of(rod.pin_mass)
-        return (
-            push
-            - self.drive.centrifugal(rod.pin_mass)
-            + (self.angle.cos * along + self.angle.sin * across)
-        )
+        weight = self.angle.cos * along + self.angle.sin * across
+        return push - self.drive.centrifugal(rod.pin_mass) + weight
 
     M_out = value(
         "M_2",
@@ -664,13 +662,12 @@ class State(Chambers):
     @cached_property
     def losses(self) -> dict[str, Number]:
         """Torque in N m lost by friction in pins, journals and the block of a yoke, by the keys in `friction`."""
-        found, lost = self.rubbing, dict[str, Number]()
-        if found is not None:
-            lost["crank_pin"] = found.at_crank * (1 + self.rod_slope)
-            lost["crosshead_pin"], lost["journals"] = (
-                found.at_crosshead * self.rod_slope,
-                found.journals,
-            )
+        rubbing = self.rubbing
+        lost = dict[str, Number]()
+        if rubbing is not None:
+            lost["crank_pin"] = rubbing.at_crank * (1 + self.rod_slope)
+            lost["crosshead_pin"] = rubbing.at_crosshead * self.rod_slope
+            lost["journals"] = rubbing.journals
         if self.drive.yoke_rubs:
             lost["block"] = self._friction_side * self.angle.cos * self.mechanism.crank
         return lost
@@ -714,10 +711,13 @@ def reduced_inertia(state: State) -> Any:
     if drive.cylinder.link_rod is not None:
         speed, _ = state.linked_piston.knuckle_motion(state.angle)
         inertia = inertia + drive.knuckle_mass * np.abs(speed) ** 2
-    return (
-        inertia if rod is None else inertia + state.rod_slope * state.rod_slope * rod.excess_inertia
-    )
+    if rod is None:
+        return inertia
+    return inertia + state.rod_slope * state.rod_slope * rod.excess_inertia
 
 
 def _sum(first: Any, second: Any) -> Any:
-    return second if first is None else first if second is None else first + second
+    """Return the sum of two forces, of which each may be None."""
+    if first is None:
+        return second
+    return first if second is None else first + second

@@ -173,8 +173,8 @@ class Trace(Indivisible):
 
     def of_cycle(self, number: int, period: float) -> "Trace":
         """Return one cycle of these degrees alone, counted from 1."""
-        whole = self.over(period)
-        return replace(whole, samples=whole.samples[number - 1 : number])
+        of_period = self.over(period)
+        return replace(of_period, samples=of_period.samples[number - 1 : number])
 
 
 def joined_in_pairs(laps: Array) -> Array:
@@ -337,15 +337,15 @@ class Peak(NamedTuple):
     samples: int
 
 
-def parabola_peak(places: Array, values: Array, top: float, width: float) -> Peak | None:
+def parabola_peak(positions: Array, values: Array, top: float, width: float) -> Peak | None:
     """Return the peak of the parabola of least squares through samples (n,) within `width` of the top one.
 
     None where they are fewer than five, or have no peak within that width. A single top sample may be noise: each
     parabola goes on from the peak of the one before.
     """
     for _ in range(3):
-        near = np.abs(places - top) <= width
-        along = places[near] - top
+        near = np.abs(positions - top) <= width
+        along = positions[near] - top
         if len(along) < FEWEST or len(np.unique(along.round(3))) < 3:
             return None
         (bend, slope, _), covariance = np.polyfit(along, values[near], 2, cov=True)
@@ -360,8 +360,8 @@ def parabola_peak(places: Array, values: Array, top: float, width: float) -> Pea
 
 def sides_of(top: float, angles: Array, pressures: Array, period: float) -> Array:
     """Return the mean pressures before and after a peak at an angle, on three stretches from near to far, (2, 3)."""
-    places = np.multiply.outer([-1.0, 1.0], _SIDES) + top
-    return np.interp(places, angles, pressures, period=period).mean(axis=-1)
+    positions = np.multiply.outer([-1.0, 1.0], _SIDES) + top
+    return np.interp(positions, angles, pressures, period=period).mean(axis=-1)
 
 
 def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
@@ -376,27 +376,28 @@ def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
         )
     pressures, period = laps.mean(axis=0)[:-1], float(angles[-1] - angles[0])
     top = float(angles[int(np.argmax(pressures))])
-    places = np.remainder(angles[:-1] - top + period / 2, period) - period / 2
-    if np.count_nonzero(np.abs(places) <= _HALF / 2) < FEWEST:
+    positions = np.remainder(angles[:-1] - top + period / 2, period) - period / 2
+    if np.count_nonzero(np.abs(positions) <= _HALF / 2) < FEWEST:
         refused(
             f"has fewer than five samples within {_HALF / 2:g} deg of its peak; measure it finer"
         )
-    whole = parabola_peak(places, pressures, 0.0, _HALF)
-    if whole is None:
+    peak = parabola_peak(positions, pressures, 0.0, _HALF)
+    if peak is None:
         refused("is no motored trace: it has no peak that a parabola could be laid through")
     low = float(np.quantile(pressures, _LOW))
-    before, after = sides_of(whole.place, places, pressures, period) - low
+    before, after = sides_of(peak.place, positions, pressures, period) - low
     if not ((_ALIKE[0] * before <= after) & (after <= _ALIKE[1] * before)).all():
         refused(
             "is no motored trace: before and after its peak the pressures differ; name one without combustion"
         )
-    half = parabola_peak(places, pressures, whole.place, _HALF / 2)
+    narrow_peak = parabola_peak(positions, pressures, peak.place, _HALF / 2)
     # of a peak that is no parabola the half of the samples gives another place; where their noise hides it, its
     # standard error, √8 times that of all, is the bound
     doubt = math.hypot(
-        whole.error, math.sqrt(8) * whole.error if half is None else whole.place - half.place
+        peak.error,
+        math.sqrt(8) * peak.error if narrow_peak is None else peak.place - narrow_peak.place,
     )
-    return whole._replace(place=top + whole.place), doubt
+    return peak._replace(place=top + peak.place), doubt
 
 
 # The indicated work of a trace: weights of its samples in ∮ p dz over the stroke fraction z.
@@ -411,8 +412,8 @@ _DENSEST = 20_000
 
 def by_angle(setting: Setting, derivative: Callable[[CrankAngle], Number], degrees: Array) -> Array:
     """Return a derivative of the stroke fraction z by φ, from that of the coordinate of the mechanism."""
-    found = derivative(CrankAngle.of(degrees)) / setting.mechanism.stroke
-    return found if setting.head_end else -found
+    slope = derivative(CrankAngle.of(degrees)) / setting.mechanism.stroke
+    return slope if setting.head_end else -slope
 
 
 def by_trapezoid(
@@ -440,9 +441,9 @@ def by_straight_lines(
         nodes = 10
     if len(breaks) > _DENSEST:
         nodes = 4
-    whole = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
+    pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
     pieces, (slopes,) = refined(
-        whole, lambda some: by_angle(setting, slope, some.degrees + angles[0])[None]
+        pieces, lambda some: by_angle(setting, slope, some.degrees + angles[0])[None]
     )
 
     line = np.searchsorted(along, pieces.middle, side="right") - 1

@@ -90,8 +90,11 @@ class TracePressure:
         ahead, behind = (
             within_cycle(middles + way - self.angles[0], cycle) for way in (_CHORD / 2, -_CHORD / 2)
         )
-        found = [np.interp(ahead, along, one) - np.interp(behind, along, one) for one in cycles]
-        return np.stack(found) / _CHORD, within_cycle(middles, cycle)
+        rises_of_cycles = [
+            np.interp(ahead, along, pressures) - np.interp(behind, along, pressures)
+            for pressures in cycles
+        ]
+        return np.stack(rises_of_cycles) / _CHORD, within_cycle(middles, cycle)
 
     @cached_property
     def steepest(self) -> Extreme:

@@ -160,12 +160,12 @@ def _numbers(text: str, layout: Layout) -> Array:
     Kept, since designs that vary what is known of a trace have one text in common. Refuses columns between which
     commas seem to be decimal ones, too: '0,37,05' without any point.
     """
-    known = familiar(text)
+    readable = familiar(text)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # an empty file, of which a message of ours speaks
-            found = np.loadtxt(
-                io.StringIO(layout.tidied(known)),
+            numbers = np.loadtxt(
+                io.StringIO(layout.tidied(readable)),
                 delimiter=layout.between,
                 skiprows=layout.skip_rows,
                 usecols=tuple(column - 1 for column in layout.wanted),
@@ -173,7 +173,7 @@ def _numbers(text: str, layout: Layout) -> Array:
                 max_rows=MOST_NUMBERS // len(layout.wanted) + 1,
             )
     except ValueError:
-        raise RuleError(_first_fault(known, layout)) from None
+        raise RuleError(_first_fault(readable, layout)) from None
     body = text.split("\n", layout.skip_rows)[-1]
     split = layout.delimiter == "comma" and "." not in body and _SPLIT_DECIMALS.search(body)
     if split:
@@ -185,8 +185,8 @@ def _numbers(text: str, layout: Layout) -> Array:
             "write 'delimiter: semicolon' and 'decimal: comma'"
         )
         refused(message, "file")
-    found.flags.writeable = False
-    return found
+    numbers.flags.writeable = False
+    return numbers
 
 
 def _figure_lines(text: str, layout: Layout) -> Iterator[tuple[int, str]]:

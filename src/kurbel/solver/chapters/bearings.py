@@ -191,9 +191,8 @@ class Bearing(Results):
             length = self.oil.length if length is None else length
         self.size = diameter, length
         cycle = 360.0 * self.machine.revolutions
-        self._common = common(
-            [(cylinder.pieces, position(cylinder)) for cylinder in cylinders], cycle
-        )
+        parts = [(cylinder.pieces, position(cylinder)) for cylinder in cylinders]
+        self._common = common(parts, cycle)
 
     @abstractmethod
     def _frames(self, degrees: Array, within: Array) -> Frames:
@@ -274,34 +273,37 @@ class Bearing(Results):
     def answers(self) -> ValuesById:
         """The key values by id in SI; those that need sizes or speed only if these are given."""
         pieces, load, surfaces = self._cycle
-        ends, mean = (
-            pieces.extremes(load[None]).each(self._result)[0],
-            self._result(pieces.mean(load)),
-        )
-        found: ValuesById = {"load_max": ends.largest, "load_min": ends.smallest, "load_mean": mean}
-        found["load_high"] = self._result(
-            mean_of_high(pieces, load, np.atleast_1d(ends.largest.value))
-        )
+        extremes = pieces.extremes(load[None]).each(self._result)[0]
+        most = extremes.largest
+        mean = self._result(pieces.mean(load))
+        high = mean_of_high(pieces, load, np.atleast_1d(most.value))
+        answers: ValuesById = {
+            "load_max": most,
+            "load_min": extremes.smallest,
+            "load_mean": mean,
+            "load_high": self._result(high),
+        }
         for surface, ending in zip(surfaces, ("", "_shell")):
-            for id, degrees in zip(
-                ("unloaded_arc", "unloaded_middle"), unloaded(pieces, surface, self.contact)
-            ):
-                none = self.count is None and math.isnan(degrees[0])
-                found[id + ending] = None if none else self._result(degrees)
+            arc_and_middle = unloaded(pieces, surface, self.contact)
+            for id, degrees in zip(("unloaded_arc", "unloaded_middle"), arc_and_middle):
+                is_absent = self.count is None and math.isnan(degrees[0])
+                answers[id + ending] = None if is_absent else self._result(degrees)
 
         diameter, length = self.size
         if diameter is not None and length is not None:
-            found["pressure_max"] = Extreme(
-                ends.largest.value / (diameter * length), ends.largest.degrees
-            )
-            found["pressure_mean"] = mean / (diameter * length)
+            area = diameter * length
+            answers["pressure_max"] = Extreme(most.value / area, most.degrees)
+            answers["pressure_mean"] = mean / area
         if diameter is not None and self.omega is not None:
-            surface_speed, (fastest, rate) = self.omega * diameter / 2, self.turning()
-            found["rubbing_speed_max"] = Extreme(fastest.value * surface_speed, fastest.degrees)
-            found["rubbing_speed_mean"] = rate * surface_speed
+            surface_speed = self.omega * diameter / 2
+            fastest, rate = self.turning()
+            answers["rubbing_speed_max"] = Extreme(fastest.value * surface_speed, fastest.degrees)
+            answers["rubbing_speed_mean"] = rate * surface_speed
             if length is not None:
-                found["pressure_velocity"] = found["pressure_mean"] * found["rubbing_speed_mean"]
-        return found
+                answers["pressure_velocity"] = (
+                    answers["pressure_mean"] * answers["rubbing_speed_mean"]
+                )
+        return answers
 
 
 class RodPin(Bearing):
@@ -312,38 +314,40 @@ class RodPin(Bearing):
 
     of_rod = True
 
-    def __init__(self, name: str, own: CylinderForces, size: Size, pin: str) -> None:
+    def __init__(self, name: str, forces: CylinderForces, size: Size, pin: str) -> None:
         surfaces = ("throw" if pin == "crank_pin" else "engine", "rod")
-        super().__init__(name, pin, (own,), size, surfaces)
-        self._own = own
+        super().__init__(name, pin, (forces,), size, surfaces)
+        self._forces = forces
         self._pin = pin
         # its stroke line, from that of cylinder 1
-        first = own.drive.machine.cylinders[0]
-        self._bank = unit_vector(own.drive.cylinder.bank_angle - first.bank_angle)
+        first = forces.drive.machine.cylinders[0]
+        self._bank = unit_vector(forces.drive.cylinder.bank_angle - first.bank_angle)
 
     def _seen(self, state: State, bank: Any) -> Frames:
         """Return the load in each frame; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""
         sin_psi, cos_psi = state.rod_angle or (0.0, 1.0)
-        found = {}
+        frames: Frames = {}
         if self._pin == "crank_pin":
             D, T = on_pin(state)
-            found["throw"] = -D + 1j * T
-            line = found["throw"] * (state.angle.cos + 1j * state.angle.sin)
+            frames["throw"] = -D + 1j * T
+            line = frames["throw"] * (state.angle.cos + 1j * state.angle.sin)
         else:
             along, across = on_crosshead_pin(state)
             line = along - 1j * across
-        return {**found, "engine": line * bank, "rod": line * (cos_psi + 1j * sin_psi)}
+        frames["engine"] = line * bank
+        frames["rod"] = line * (cos_psi + 1j * sin_psi)
+        return frames
 
     def _frames(self, degrees: Array, within: Array) -> Frames:
-        return self._seen(state_at(self._own, degrees, within), self._bank)
+        return self._seen(state_at(self._forces, degrees, within), self._bank)
 
     def _samples(self) -> Sequence[ComplexArray]:
-        frames = self._seen(self._own.samples, self._own.pieces.of(self._bank))
-        return [*resampled(self._common, self._own, frames[self.journal], frames[self.shell])]
+        frames = self._seen(self._forces.samples, self._forces.pieces.of(self._bank))
+        return [*resampled(self._common, self._forces, frames[self.journal], frames[self.shell])]
 
     def _turning(self) -> Array:
         """The rod turns on the crank pin with 1 + dψ/dφ, on the crosshead pin with dψ/dφ; see `Bearing`."""
-        state, pieces = self._own.samples, self._common
+        state, pieces = self._forces.samples, self._common
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         mechanism = state.drive.mechanism
         slope = formulas.rod_slope(state.angle.cos, cos_psi, mechanism.lam)
@@ -351,7 +355,7 @@ class RodPin(Bearing):
             # ψ_l does not follow from the crank pin, and τ = −ψ_l
             slope = -state.linked_piston.coupler_at(state.angle).slope
         rate = 1 + slope if self._pin == "crank_pin" else slope
-        return resampled(pieces, self._own, rate).real[0]
+        return resampled(pieces, self._forces, rate).real[0]
 
     def turning(self) -> tuple[Extreme, Number]:
         """Of a rod that swings; see `Bearing`."""
@@ -362,30 +366,28 @@ class RodPin(Bearing):
 
     def friction_work(self) -> Number | None:
         """That of `kurbel forces`, over the cycle of the machine; see `Bearing`."""
-        work = self._own.friction_works.get(self._pin)
-        return (
-            None
-            if work is None
-            else work * (self.machine.revolutions // self._own.drive.revolutions)
-        )
+        work = self._forces.friction_works.get(self._pin)
+        if work is None:
+            return None
+        return work * (self.machine.revolutions // self._forces.drive.revolutions)
 
 
 class MasterPin(RodPin):
     """The crank pin of a master rod, which carries the forces of its link rods, too."""
 
     def __init__(
-        self, name: str, own: CylinderForces, links: Sequence[CylinderForces], size: Size
+        self, name: str, forces: CylinderForces, links: Sequence[CylinderForces], size: Size
     ) -> None:
-        super().__init__(name, own, size, "crank_pin")
+        super().__init__(name, forces, size, "crank_pin")
         self._links = tuple(links)
         cycle = 360.0 * self.machine.revolutions
-        parts = [(cylinder.pieces, position(cylinder)) for cylinder in (own, *links)]
+        parts = [(cylinder.pieces, position(cylinder)) for cylinder in (forces, *links)]
         self._common = common(parts, cycle)
 
     def _seen_from(self, throw: ComplexArray, degrees: Array) -> Frames:
         """Return a load in N from the frame of the throw in every frame; degrees: of the own crank."""
         angle = CrankAngle.of(degrees)
-        rod_angle = self._own.mechanism.rod_angle(angle)
+        rod_angle = self._forces.mechanism.rod_angle(angle)
         assert rod_angle is not None
         sin_psi, cos_psi = rod_angle
         line = throw * (angle.cos + 1j * angle.sin)
@@ -397,24 +399,24 @@ class MasterPin(RodPin):
 
     def _frames(self, degrees: Array, within: Array) -> Frames:
         load: Force = 0j
-        for cylinder in (self._own, *self._links):
+        for cylinder in (self._forces, *self._links):
             load = load - np.conj(pin_load(state_at(cylinder, degrees, within)))
-        return self._seen_from(load, degrees - position(self._own))
+        return self._seen_from(load, degrees - position(self._forces))
 
     def _samples(self) -> Sequence[ComplexArray]:
         load: Force = 0j
-        for cylinder in (self._own, *self._links):
+        for cylinder in (self._forces, *self._links):
             (on_pin_of_rod,) = resampled(self._common, cylinder, pin_load(cylinder.samples))
             load = load - np.conj(on_pin_of_rod)
-        frames = self._seen_from(load, self._common.degrees - position(self._own))
+        frames = self._seen_from(load, self._common.degrees - position(self._forces))
         return [frames[self.journal], frames[self.shell]]
 
 
 class KnucklePin(RodPin):
     """The knuckle pin of a link rod, at rest in the master rod; the load is that of the link rod on it."""
 
-    def __init__(self, name: str, own: CylinderForces) -> None:
-        super().__init__(name, own, (None, None), "knuckle_pin")
+    def __init__(self, name: str, forces: CylinderForces) -> None:
+        super().__init__(name, forces, (None, None), "knuckle_pin")
         self.journal = "master"
 
     def _seen(self, state: State, bank: Any) -> Frames:
@@ -430,9 +432,9 @@ class KnucklePin(RodPin):
 
     def _turning(self) -> Array:
         """The link rod turns on its knuckle pin with ψ_l′ − ψ′; see `Bearing`."""
-        state = self._own.samples
+        state = self._forces.samples
         rate = state.linked_piston.turning_on_master(state.angle)
-        return resampled(self._common, self._own, rate).real[0]
+        return resampled(self._common, self._forces, rate).real[0]
 
 
 class MainBearing(Bearing):
@@ -448,11 +450,14 @@ class MainBearing(Bearing):
         name: str,
         number: int,
         line: SupportedShaft,
-        every: Sequence[CylinderForces],
+        all_cylinders: Sequence[CylinderForces],
         size: Size,
     ) -> None:
         throws = [throw for throw in line.throws if number in (throw.A, throw.B)]
-        self._members = {index: every[index] for throw in throws for index in throw.cylinders}
+        self._members = dict[int, CylinderForces]()
+        for throw in throws:
+            for index in throw.cylinders:
+                self._members[index] = all_cylinders[index]
         cylinders = tuple(self._members.values())
         super().__init__(name, "journals", cylinders, size, ("throw", "engine"))
         self._number, self._line = number, line
@@ -478,24 +483,21 @@ class MainBearing(Bearing):
         return force
 
     def _frames(self, degrees: Array, within: Array) -> Frames:
-        pins = {
-            number: pin_load(state_at(own, degrees, within))
-            for number, own in self._members.items()
-        }
+        pins = {}
+        for number, forces in self._members.items():
+            pins[number] = pin_load(state_at(forces, degrees, within))
         throw = self._force(self._line, pins, degrees)
         return {"throw": throw, "engine": throw * unit_vector(degrees)}
 
     def _sampled(self, rubbed: bool) -> ComplexArray:
         """Return the force in N on the common pieces; rubbed: with the friction of the pins."""
         pieces, pins = self._common, {}
-        for number, own in self._members.items():
-            state = own.samples if rubbed else own.samples.without_pin_friction
-            (pins[number],) = resampled(pieces, own, pin_load(state))
-        line = (
-            self._line
-            if self.count is None
-            else SupportedShaft(taken(self.machine, pieces.machine))
-        )
+        for number, forces in self._members.items():
+            state = forces.samples if rubbed else forces.samples.without_pin_friction
+            (pins[number],) = resampled(pieces, forces, pin_load(state))
+        line = self._line
+        if self.count is not None:
+            line = SupportedShaft(taken(self.machine, pieces.machine))
         return self._force(line, pins, pieces.degrees)
 
     def _samples(self) -> Sequence[ComplexArray]:
@@ -504,14 +506,15 @@ class MainBearing(Bearing):
 
     def friction_work(self) -> Number | None:
         """∮ f |F| d/2 dφ with the force F without the friction of the pins; see `Bearing`."""
-        given = [cylinder.drive.cylinder.friction for cylinder in self.cylinders]
-        coefficient = next(
-            (one.journals for one in given if one and one.journals is not None), None
-        )
-        if coefficient is None or self.size[0] is None:
+        coefficients = []
+        for forces in self.cylinders:
+            friction = forces.drive.cylinder.friction
+            if friction and friction.journals is not None:
+                coefficients.append(friction.journals)
+        if not coefficients or self.size[0] is None:
             return None
         pieces, load, _ = with_magnitude(self._common, [self._sampled(rubbed=False)])
-        return self._result(pieces.integral(load)) * coefficient * self.size[0] / 2
+        return self._result(pieces.integral(load)) * coefficients[0] * self.size[0] / 2
 
 
 def with_magnitude(
@@ -528,7 +531,7 @@ def with_magnitude(
         parts,
         parts[:2],
         np.stack((largest, largest)),
-        lambda some, found: np.hypot(*found[:2])[None],
+        lambda _, components: np.hypot(*components[:2])[None],
     )
     return fine, load[0], parts[::2] + 1j * parts[1::2]
 
@@ -588,15 +591,16 @@ def unreached(arcs: Sequence[tuple[float, float]]) -> tuple[float, float]:
     """
     if not arcs:
         return math.nan, math.nan
-    reached, whole, widest, middle = max(end for _, end in arcs) - 360.0, 0.0, 0.0, math.nan
+    reached = max(end for _, end in arcs) - 360.0
+    uncovered, widest, middle = 0.0, 0.0, math.nan
     for begin, end in sorted(arcs):
         gap = begin - reached
         if gap > 0:
-            whole += gap
+            uncovered += gap
         if gap > widest + _EQUAL:
             widest, middle = gap, begin - gap / 2
         reached = max(reached, end)
-    return whole, float(_axial(np.asarray(middle - 360.0 * np.rint(middle / 360.0)), _EQUAL))
+    return uncovered, float(_axial(np.asarray(middle - 360.0 * np.rint(middle / 360.0)), _EQUAL))
 
 
 def _axial(directions: Array, rounding: float) -> Array:
@@ -628,55 +632,49 @@ class ShaftBearings:
     @cached_property
     def parts(self) -> tuple[Bearing, ...]:
         """Crank pin and crosshead pin of every cylinder, then the main bearings along the shaft."""
-        pins = (
-            pin
-            for number, one in enumerate(self._cylinders)
-            if _loads_pins(one)
-            for pin in self._pins(number, one)
-        )
+        pins = list[Bearing]()
+        for number, forces in enumerate(self._cylinders):
+            if _loads_pins(forces):
+                pins += self._pins(number, forces)
         return (*pins, *self._main_bearings())
 
-    def _pins(self, number: int, own: CylinderForces) -> Iterator[RodPin]:
-        friction, shaft = own.drive.cylinder.friction, self.machine.crankshaft
-        of = f" of {own.drive.name}" if len(self._cylinders) > 1 else ""
+    def _pins(self, number: int, forces: CylinderForces) -> Iterator[RodPin]:
+        """Yield the pins of a rod: that on the crank, or on its master rod, and that in the crosshead."""
+        cylinder, shaft = forces.drive.cylinder, self.machine.crankshaft
+        friction = cylinder.friction
+        of = f" of {forces.drive.name}" if len(self._cylinders) > 1 else ""
+        links = [other for other in self._cylinders if _hangs_on(other, forces)]
         pin: Size = friction.crank_pin_diameter if friction else None, None
-        links = [forces for forces in self._cylinders if _hangs_on(forces, own)]
-        if own.drive.cylinder.link_rod is not None:
-            yield KnucklePin(f"knuckle pin{of}", own)
+        if cylinder.link_rod is not None:
+            yield KnucklePin(f"knuckle pin{of}", forces)
         elif links:
             if shaft:
                 pin = shaft.pin_diameter, shaft.pin_length
-            yield MasterPin(f"crank pin{of}", own, links, pin)
-        elif shaft:  # rods on one pin have equal parts of its length
-            rods = len(self.line.throw_of(number).cylinders) if self.line else 1
-            pin = shaft.pin_diameter, shaft.pin_length / rods
-        if not links and own.drive.cylinder.link_rod is None:
-            yield RodPin(f"crank pin{of}", own, pin, "crank_pin")
-        crosshead = (
-            (friction.crosshead_pin_diameter, friction.crosshead_pin_length)
-            if friction
-            else (None, None)
-        )
-        yield RodPin(f"crosshead pin{of}", own, crosshead, "crosshead_pin")
+            yield MasterPin(f"crank pin{of}", forces, links, pin)
+        else:
+            if shaft:  # rods on one pin have equal parts of its length
+                rods = len(self.line.throw_of(number).cylinders) if self.line else 1
+                pin = shaft.pin_diameter, shaft.pin_length / rods
+            yield RodPin(f"crank pin{of}", forces, pin, "crank_pin")
+        crosshead: Size = None, None
+        if friction:
+            crosshead = friction.crosshead_pin_diameter, friction.crosshead_pin_length
+        yield RodPin(f"crosshead pin{of}", forces, crosshead, "crosshead_pin")
 
     def _main_bearings(self) -> Iterator[MainBearing]:
+        """Yield the main bearings along the shaft, two of them A and B, more of them numbered."""
         if self.line is None:
             return
-        shaft, frictions = (
-            self.line.shaft,
-            [cylinder.friction for cylinder in self.machine.cylinders],
-        )
-        diameters = (
-            shaft.journal_diameter,
-            *(friction.journal_diameter for friction in frictions if friction),
-        )
-        size = (
-            next((diameter for diameter in diameters if diameter is not None), None),
-            shaft.journal_length,
-        )
-        for number, name in enumerate(
-            "AB" if self.line.bearings == 2 else range(1, self.line.bearings + 1)
-        ):
+        shaft = self.line.shaft
+        diameters = [shaft.journal_diameter]
+        for cylinder in self.machine.cylinders:
+            if cylinder.friction:
+                diameters.append(cylinder.friction.journal_diameter)
+        stated = [diameter for diameter in diameters if diameter is not None]
+        size = stated[0] if stated else None, shaft.journal_length
+        count = self.line.bearings
+        names = "AB" if count == 2 else range(1, count + 1)
+        for number, name in enumerate(names):
             yield MainBearing(f"bearing {name}", number, self.line, self._cylinders, size)
 
 
