@@ -24,9 +24,12 @@ class LinkRod(Record):
     """
 
     master: str = field(
-        str, "Name of the earlier cylinder that has the master rod", default="", example="main",
+        str,
+        "Name of the earlier cylinder that has the master rod",
+        default="",
+        example="main",
         absent="required in a list; of equal cylinders the first of every throw",
-    )  # fmt: skip
+    )
     knuckle_radius: float = field(
         "length", "Distance of the knuckle pin from the crank pin", "k", above=0, example="58 mm"
     )
