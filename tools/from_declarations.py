@@ -1,6 +1,6 @@
 """The pages of docs/reference: every key, unit, column, key value, command and option, from their declarations.
 
-`pytest --rewrite tests/test_documents.py` writes them.
+`pytest --rewrite tests/project/test_documents.py` writes them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from kurbel.report.stress import STRESSES
 from kurbel.report.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS
 from kurbel.report.zusammenstellung import FACTORS
 
-_WRITTEN = "<!-- Written from the declarations by `pytest --rewrite tests/test_documents.py`; do not edit by hand. -->"
+_WRITTEN = "<!-- Written from the declarations by `pytest --rewrite tests/project/test_documents.py`; do not edit by hand. -->"
 
 
 def keys() -> str:

@@ -1,6 +1,6 @@
 """The page of the notebook: its cells, run as a script, with what each shows.
 
-`pytest --rewrite tests/test_documents.py` writes it from docs/notebook.ipynb, which has no outputs of its own.
+`pytest --rewrite tests/project/test_documents.py` writes it from docs/notebook.ipynb, which has no outputs of its own.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The reference of kurbel in Python: what `kurbel` exports, and what results have, from signatures and docstrings.
 
-`pytest --rewrite tests/test_documents.py` writes it.
+`pytest --rewrite tests/project/test_documents.py` writes it.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The page of the machines that come with kurbel: what each is and teaches, its picture, its results, its file.
 
-The site includes the file itself (`--8<--`). `pytest --rewrite tests/test_documents.py` writes it, and the same on
+The site includes the file itself (`--8<--`). `pytest --rewrite tests/project/test_documents.py` writes it, and the same on
 tests/pictures/test_gallery.py its pictures.
 """
 

@@ -1,6 +1,6 @@
 """The page of validation: every published example as printed and as computed, and which of both is right.
 
-`pytest --rewrite tests/test_documents.py` writes it, from the tables of the tests.
+`pytest --rewrite tests/project/test_documents.py` writes it, from the tables of the tests.
 """
 
 from __future__ import annotations

@@ -139,7 +139,7 @@ def test_every_command_has_extreme_cases() -> None:
 
 
 def test_faults_of_reading_are_refused() -> None:
-    """They are no extremes; the messages are those of `tests/refused.yaml`."""
+    """They are no extremes; the messages are those of `tests/messages/refused.yaml`."""
     lines = (
         (Path(__file__).parent / "reading_faults.tsv").read_text(encoding="utf-8").splitlines()[1:]
     )

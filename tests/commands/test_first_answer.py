@@ -22,7 +22,7 @@ from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame
 from kurbel.tables.tables import Report, first_selection, shown_once, stepped
 
-CONFIGS = Path(__file__).parent.parent / "configs"
+CONFIGS = Path(__file__).parents[2] / "configs"
 WATERWORKS = str(CONFIGS / "waterworks.yaml")
 LOCOMOTIVE = str(CONFIGS / "locomotive.yaml")
 SHIPPED = [path for path in sorted(CONFIGS.glob("*.yaml")) if load(str(path)).cylinders]

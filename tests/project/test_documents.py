@@ -29,7 +29,7 @@ from command import run
 from representative import law_of_each
 from worked_examples import TABLE
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
 PAGES = sorted((ROOT / "docs").rglob("*.md"))
 COMMAND = re.compile(r"```console\n(\$ [^\n]*)\n(.*?)```", re.DOTALL)
@@ -249,7 +249,7 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 # every example in a docstring gives what stands below it
 
-SOURCE = Path(__file__).parent.parent / "src"
+SOURCE = Path(__file__).parents[2] / "src"
 MODULES = [
     ".".join(file.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__")
     for file in sorted(SOURCE.rglob("*.py"))

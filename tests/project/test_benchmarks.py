@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-FOLDER = Path(__file__).parent.parent / "benchmarks"
+FOLDER = Path(__file__).parents[2] / "benchmarks"
 BRIEF = {
     "free_bodies.py": ["punch"],
     "oil_film.py": ["1"],

@@ -243,7 +243,7 @@ class Server:
     """
 
     def __init__(self, *words: str) -> None:
-        server = str(Path(__file__).parent / "loaded.py")
+        server = str(Path(__file__).parents[1] / "loaded.py")
         self.process = subprocess.Popen(
             [sys.executable, server, *words],
             stdin=subprocess.PIPE,

@@ -8,7 +8,7 @@ import pytest
 
 from command import answer, printed, run
 
-CONFIGS = Path(__file__).parent.parent / "configs"
+CONFIGS = Path(__file__).parents[2] / "configs"
 WATERWORKS = str(CONFIGS / "waterworks.yaml")
 TWO_STAGES = str(CONFIGS / "compressor-two-stage.yaml")
 TWO_CRANKS = str(CONFIGS / "waterworks-two-cranks.yaml")

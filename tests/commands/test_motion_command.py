@@ -16,7 +16,7 @@ import yaml
 
 from command import answer, run
 
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).parents[1]
 SLIDER = "crank: 400 mm\nrod: 2000 mm\n"
 FITTING = yaml.safe_load((FOLDER / "motion_of_mechanisms.yaml").read_text("utf-8"))
 

@@ -12,7 +12,7 @@ from kurbel.solver.case import Case
 from representative import SHIPPED
 
 EXAMPLES = sorted(
-    path for path in Path(__file__).parent.glob("examples/*.yaml") if path.stem != "answers"
+    path for path in Path(__file__).parents[1].glob("examples/*.yaml") if path.stem != "answers"
 )
 ENGINE = {
     "speed": "2000 rpm",
