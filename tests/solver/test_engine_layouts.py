@@ -4,6 +4,7 @@ import inspect
 import math
 import textwrap
 from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,12 @@ from kurbel.machine.firing import firings
 from kurbel.machine.several import intervals, on_throws
 from kurbel.machine_file import loads
 from kurbel.mechanisms.link_rod import LinkedPiston
+from kurbel.mechanisms.oscillating_cylinder import OscillatingCylinder
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.balance import _of_knuckles
+from kurbel.solver.chapters.bearings import MasterPin
+from kurbel.solver.effort import torque_of_inertia
+from kurbel.solver.state import State, reduced_inertia
 
 LATER: tuple[str, ...] = ()
 """Machines with keys that kurbel does not have yet."""
@@ -377,6 +382,19 @@ def test_the_work_of_link_rods_is_that_of_their_pistons() -> None:
     assert pytest.approx(-on_pin.real, rel=1e-12) == state.D
 
 
+def test_the_torque_of_inertia_of_a_link_rod_follows_from_its_energy() -> None:
+    """Tolle: at uniform rotation the inertia forces have the torque −½ ω² dJ/dφ, the mass at the knuckle pin, too."""
+    side = Case(loads(V_LINK)).cylinders[1]
+    degrees = [10.0, 70.0, 200.0, 333.0]
+    step = 1e-2
+    before = reduced_inertia(side.at([degree - step for degree in degrees]))
+    after = reduced_inertia(side.at([degree + step for degree in degrees]))
+    slope = (after - before) / math.radians(2 * step)
+    omega = 2 * math.pi * 1800 / 60
+    torque = torque_of_inertia(side.at(degrees))
+    assert torque == pytest.approx(-0.5 * omega**2 * slope, rel=1e-6)
+
+
 def test_a_rod_with_its_knuckle_on_the_crank_pin_is_a_rod_on_the_crank_pin() -> None:
     """With k → 0 and l = L the link rod is a rod like any other."""
     knuckle = "length: 320 mm, knuckle_radius: 1e-5 mm"
@@ -431,6 +449,17 @@ def test_ports_open_where_published_tables_have_them(
     assert closing == pytest.approx(360 - opens_at, abs=tolerance)
 
 
+def body_of(of_type: type, name: str) -> Callable[..., Any]:
+    """Return the function behind a property."""
+    descriptor = vars(of_type)[name]
+    if isinstance(descriptor, cached_property):
+        return descriptor.func
+    function: Callable[..., Any] = descriptor.fget
+    return function
+
+
+KNUCKLE_MOTION = "_, acceleration = linked_piston.knuckle_motion(CrankAngle.of(degrees))"
+PIN_MOTION = "acceleration = -linked_piston.crank * unit_vector(degrees)"
 SLIPS: tuple[tuple[str, Callable[..., Any], str, str], ...] = (
     ("vr-pair", crank_lag, "+ (first_inner - inner)", ""),
     ("vr-pair", crank_lag, "first_inner - inner", "inner - first_inner"),
@@ -452,6 +481,19 @@ SLIPS: tuple[tuple[str, Callable[..., Any], str, str], ...] = (
     ("v-link", LinkedPiston.curvature, "link.cos * link.slope * link.slope + ", ""),
     ("radial-9", _of_knuckles, "* -throw.knuckle_mass", "* throw.knuckle_mass"),
     ("radial-9", _of_knuckles, "-throw.knuckle_mass", "0.0"),
+    # the mass at the knuckle pin put on the crank pin: z″ = −R e^{iφ}
+    ("radial-9", _of_knuckles, KNUCKLE_MOTION, PIN_MOTION),
+    # the mass at the knuckle pin left out of Q, of T, of D
+    ("v-link", body_of(State, "knuckle_force"), "self._knuckle_inertia - ", "-"),
+    ("v-link", body_of(State, "_rod_tangential"), "self.knuckle_inertia_torque", "0.0"),
+    ("v-link", body_of(State, "_knuckle_inertia_on_pin"), "self._knuckle_", "0 * self._knuckle_"),
+    # the side force that links take from the master's guide, and their loads on its crank pin
+    ("v-link", body_of(State, "_links_side"), "self._side(self._moment_of_links)", "0.0"),
+    ("v-link", MasterPin._frames, "(self._own, *self._links)", "(self._own,)"),
+    # the force of a wobbler along the line of centres; its cylinder turned the wrong way; x″ without x′²
+    ("wobbler", OscillatingCylinder.radial, "angle.cos * cos + angle.sin * sin", "angle.cos"),
+    ("wobbler", OscillatingCylinder._direction, "-self.crank", "self.crank"),
+    ("wobbler", OscillatingCylinder.curvature, "- slope * slope", ""),
 )
 """Machine, function, its text and a wrong one."""
 

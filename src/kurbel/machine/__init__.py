@@ -30,7 +30,7 @@ from kurbel.declared.reading import REFUSED, text_in_one_line
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.declared.units import MOST_SHAFT_ITEMS
 from kurbel.errors import Fault, RuleError, refuse
-from kurbel.machine.cylinder import MOST_TURNS, Cylinder, counterweights, crowded
+from kurbel.machine.cylinder import MOST_TURNS, Cylinder, counterweights, crowded, names_of
 from kurbel.machine.indicator import Chamber
 from kurbel.machine.origin import Origin
 from kurbel.near_words import did_you_mean
@@ -58,9 +58,10 @@ STANDARD_ATMOSPHERE = 101325.0
 
 
 def _names(cylinders: tuple[Cylinder, ...] | EqualCylinders) -> list[str]:
-    """Return the names of cylinders; those without one are named by their numbers."""
-    items = cylinders if isinstance(cylinders, (tuple, list)) else cylinders.cylinders
-    return [cylinder.name or f"cylinder {number}" for number, cylinder in enumerate(items, 1)]
+    """Return the names of cylinders, listed or equal ones."""
+    if isinstance(cylinders, (tuple, list)):
+        return names_of(cylinders)
+    return names_of(cylinders.cylinders)
 
 
 def _with_position(cylinder: Cylinder) -> Cylinder:

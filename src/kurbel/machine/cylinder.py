@@ -265,6 +265,11 @@ class Cylinder(Record):
                 )
 
 
+def names_of(cylinders: Sequence[Cylinder]) -> list[str]:
+    """Return the names of cylinders; those without one are named by their numbers."""
+    return [cylinder.name or f"cylinder {number}" for number, cylinder in enumerate(cylinders, 1)]
+
+
 def crank_lag(cylinder: Cylinder, first: Cylinder) -> float:
     """Return δ = β + φ_i,1 − φ_i in degrees, by which the own crank angle of a cylinder lags that of the first.
 

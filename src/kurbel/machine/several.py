@@ -1,6 +1,6 @@
 """Several cylinders: equal ones described at once, where their cranks are, and when they fire."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby, product
 from typing import Any
@@ -11,7 +11,7 @@ from kurbel.declared.forms.values import FIRING_ORDER
 from kurbel.declared.record import Record, Rule, field
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
-from kurbel.machine.cylinder import Cylinder, crank_lag
+from kurbel.machine.cylinder import Cylinder, crank_lag, names_of, pin_lag
 from kurbel.numerics.arithmetic import where as choose
 
 
@@ -314,28 +314,40 @@ def _linked_in_order(
     cylinders: Sequence[Cylinder], order: tuple[int, ...] | None, cycle: str, where: Path
 ) -> tuple[Cylinder, ...]:
     """Return cylinders of which some have link rods, on the pins of their masters; see `on_throws`."""
-    from kurbel.machine.link_rod import with_links
-
-    linked = with_links(cylinders)
+    linked = _with_links()(cylinders)
     first = linked[0]
-    names = [cylinder.name or f"cylinder {index + 1}" for index, cylinder in enumerate(linked)]
     on_pins: list[Cylinder] = []
-    # as in a cylinder that gives no crank position
-    free: Any = None
-    for index, cylinder in enumerate(linked):
+    throw_angles: dict[str, float | None] = {}
+    for name, cylinder in zip(names_of(linked), linked):
         if cylinder.link_rod:
-            master = on_pins[names.index(cylinder.link_rod.master)]
-            cylinder = replace(cylinder, throw_angle=master.throw_angle, crank_position=free)
-        elif cylinder.throw_angle is None and cylinder.crank_position is None:
-            # where no pin is given, that of cylinder 1
-            if index == 0 or order is None:
-                cylinder = replace(cylinder, throw_angle=0.0)
-        elif cylinder.throw_angle is None:
-            bank_angle = cylinder.bank_angle - first.bank_angle
-            pin = crank_lag(cylinder, first) - bank_angle
-            cylinder = replace(cylinder, throw_angle=pin)
+            # on the pin of its master, from which its dead centre follows
+            throw_angle = throw_angles[cylinder.link_rod.master]
+            keys: dict[str, Any] = {"throw_angle": throw_angle, "crank_position": None}
+            cylinder = replace(cylinder, **keys)
+        else:
+            has_order = order is not None
+            cylinder = replace(cylinder, throw_angle=_throw_angle(cylinder, first, has_order))
+        throw_angles.setdefault(name, cylinder.throw_angle)
         on_pins.append(cylinder)
     return on_throws(on_pins, order, cycle, where)
+
+
+def _with_links() -> Callable[[Sequence[Cylinder]], tuple[Cylinder, ...]]:
+    from kurbel.machine.link_rod import with_links
+
+    return with_links
+
+
+def _throw_angle(cylinder: Cylinder, first: Cylinder, has_order: bool) -> float | None:
+    """Return the throw angle in degrees of a cylinder beside link rods; None where only its order tells of its pin."""
+    if cylinder.throw_angle is not None:
+        return cylinder.throw_angle
+    if cylinder.crank_position is not None:
+        return pin_lag(cylinder, first)
+    if cylinder is not first and has_order:
+        return None
+    # where no pin is given, that of cylinder 1
+    return 0.0
 
 
 def _without_throw(cylinders: Sequence[Cylinder]) -> Iterator[Fault]:
