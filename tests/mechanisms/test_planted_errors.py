@@ -41,13 +41,13 @@ SLIPS = [
     ("oscillating_cylinder", "radial", "angle.cos * cos + angle.sin * sin", "angle.cos"),
     ("oscillating_cylinder", "swing_at", "slope = -crank", "slope = crank"),
     ("oscillating_cylinder", "crank_angles_at", "reach + self._gap)", "reach)"),
-    ("parallel_crank", "", "-one.crank * angle.versine", "-one.crank * angle.sin"),
-    ("parallel_crank", "", "-one.crank * angle.cos", "one.crank * angle.cos"),
+    ("parallel_crank", "", "-mechanism.crank * angle.versine", "-mechanism.crank * angle.sin"),
+    ("parallel_crank", "", "-mechanism.crank * angle.cos", "mechanism.crank * angle.cos"),
     (
         "parallel_crank",
         "_acceleration",
-        "one.crank * results.omega",
-        "one.crank * one.crank * results.omega",
+        "mechanism.crank * results.omega",
+        "mechanism.crank * mechanism.crank * results.omega",
     ),
     ("parallel_crank", "coupler_force_factor", "angle.sin", "angle.cos"),
 ]

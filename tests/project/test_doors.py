@@ -68,7 +68,9 @@ CHECKED = {
     "solver.chapters.bearings": {"crankshaft"},
     "solver.chapters.stress": {"crankshaft"},
     "solver.chapters.stress_places": {"crankshaft"},
-    "solver.shaft": {"crankshaft"},
+    # the crank pins of several cylinders
+    "machine.crankshaft": {"crankshaft", "cylinders"},
+    "solver.shaft": {"crankshaft", "cylinders"},
     "report.torsion": {"shaft", "coupling"},
     "report.delivery": {"pump", "compressor", "gas"},
 }

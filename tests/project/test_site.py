@@ -18,7 +18,7 @@ from kurbel.quantities import every_quantity
 from kurbel.report.keys import every_place
 
 ROOT = Path(__file__).parents[2]
-WIDTHS = (360, 1000, 1400)
+WIDTHS = (360, 1400)
 HARNESS = Path(__file__).with_name("site_harness.html").read_text("utf-8")
 
 pytestmark = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from kurbel.arrays import Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
+from kurbel.machine.batch import taken
 from kurbel.machine.cylinder import crank_lag
 from kurbel.machine.parts import GasOnRings, Rings
 from kurbel.numerics.arithmetic import some
@@ -154,7 +155,7 @@ class Drive:
         friction = self.cylinder.friction
         self.crosshead_friction: Number = 0.0
         self.yoke_friction: tuple[Number, Number] = (0.0, 0.0)
-        self.guide_area: Number | None = None
+        self.guide_area: Any = None
         self.ring_force: Number = 0.0
         self.ring_surface: Number = 0.0
         self.constant_friction: Number = 0.0
@@ -180,6 +181,24 @@ class Drive:
             self.ring_surface = surface * rings.pressure.gas
         else:
             self.ring_force = surface * rings.pressure
+
+    def taken(self, index: Indices) -> Drive:
+        """Return a copy with the numbers of these machines, one for every angle or piece (n,)."""
+        if self.count is None:
+            return self
+        other = Drive(taken(self.machine, index), taken(self.cylinder, index), self.count, index)
+        other.gas = self.gas
+        other.driving, other.driven, other.pumping = self.driving, self.driven, self.pumping
+        return other
+
+    @cached_property
+    def links(self) -> tuple[Drive, ...]:
+        """The cylinders whose link rods are on the master rod of this one; of many machines with their numbers."""
+        links = []
+        for cylinder in self.machine.cylinders:
+            if cylinder.link_rod is not None and cylinder.link_rod.master == self.name:
+                links.append(Drive(self.machine, cylinder, self.count, self.index))
+        return tuple(links)
 
     @property
     def pieces(self) -> Pieces:

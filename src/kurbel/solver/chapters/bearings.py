@@ -326,7 +326,8 @@ class RodPin(Bearing):
     def _seen(self, state: State, bank: Any) -> Frames:
         """Return the load in each frame; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""
         sin_psi, cos_psi = state.rod_angle or (0.0, 1.0)
-        frames: Frames = {}
+        frames: dict[str, Any] = {}
+        line: Any
         if self._pin == "crank_pin":
             D, T = on_pin(state)
             frames["throw"] = -D + 1j * T
