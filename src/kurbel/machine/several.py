@@ -333,7 +333,7 @@ def _linked_in_order(
 
 
 def _with_links() -> Callable[[Sequence[Cylinder]], tuple[Cylinder, ...]]:
-    from kurbel.machine.link_rod import with_links
+    from kurbel.machine.linked import with_links
 
     return with_links
 
