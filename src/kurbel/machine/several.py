@@ -339,7 +339,7 @@ def _with_links() -> Callable[[Sequence[Cylinder]], tuple[Cylinder, ...]]:
 
 
 def _throw_angle(cylinder: Cylinder, first: Cylinder, has_order: bool) -> float | None:
-    """Return the throw angle in degrees of a cylinder beside link rods; None where only its order tells of its pin."""
+    """Return the throw angle in degrees of a cylinder beside link rods; None where its pin follows from the firing order alone."""
     if cylinder.throw_angle is not None:
         return cylinder.throw_angle
     if cylinder.crank_position is not None:

@@ -141,7 +141,7 @@ def single(value: float, digits: int | None = None, own: int = 0) -> tuple[str, 
     small, large = (-2, 5) if own else (_SMALL, _LARGE)
     exponent = 0 if small <= power < large else power
     decimals = count - 1 - power + exponent
-    # only digits that were asked for round whole numbers, too
+    # only requested digits round whole numbers, too
     if own or not digits:
         decimals = max(0, decimals)
     return cell(value, Scale(decimals, exponent)), exponent
