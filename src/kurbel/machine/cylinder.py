@@ -243,6 +243,10 @@ class Cylinder(Record):
         timed = self.valve.timed(self.pistons[0], self.mechanism)
         return timed, *self.pistons[1:]
 
+    def hangs_on(self, master: str) -> bool:
+        """Return whether its link rod is on the master rod of the cylinder with this name."""
+        return self.link_rod is not None and self.link_rod.master == master
+
     def rules(self) -> Iterator[Rule]:
         """Yield which parts do not fit the mechanism, and steam cards whose events are missing, or set twice."""
         if self.valve:

@@ -25,7 +25,7 @@ def with_links(cylinders: Sequence[Cylinder]) -> tuple[Cylinder, ...]:
     faults: list[Fault] = []
     for index, name in enumerate(names_of(cylinders)):
         cylinder = cylinders[index]
-        if _has_pin_friction(cylinder):
+        if cylinder.friction and cylinder.friction.of_pins:
             message = "friction of pins and journals is not computed in a machine with link rods"
             faults.append(Fault(("cylinders", index, "friction"), message))
         try:
@@ -38,15 +38,6 @@ def with_links(cylinders: Sequence[Cylinder]) -> tuple[Cylinder, ...]:
         earlier.setdefault(name, cylinder)
     refuse(*faults)
     return tuple(linked)
-
-
-def _has_pin_friction(cylinder: Cylinder) -> bool:
-    """Return whether a cylinder has friction in its pins or journals."""
-    friction = cylinder.friction
-    if friction is None:
-        return False
-    coefficients = (friction.crank_pin, friction.crosshead_pin, friction.journals)
-    return any(coefficient is not None for coefficient in coefficients)
 
 
 def _linked(cylinder: Cylinder, earlier: Mapping[str, Cylinder]) -> Cylinder:

@@ -33,7 +33,7 @@ _SEARCHED = 60.0
 class Knuckle(NamedTuple):
     """The knuckle pin at a crank angle, complex in m: its arm from the crank pin, its place, and the derivatives of it.
 
-    cos_master: cos ψ of the master rod.
+    cos_master, slope_master: cos ψ and ψ′ of the master rod.
     """
 
     arm: Any
@@ -41,6 +41,7 @@ class Knuckle(NamedTuple):
     speed: Any
     acceleration: Any
     cos_master: Any
+    slope_master: Any
 
 
 class Link(NamedTuple):
@@ -139,7 +140,7 @@ class LinkedPiston(Mechanism):
         arm = self.radius * unit_vector(self.angle - self.between) * (cos - 1j * sin)
         speed = 1j * (R * pin - slope * arm)
         acceleration = -R * pin - (slope * slope + 1j * bend) * arm
-        return Knuckle(arm, R * pin + arm, speed, acceleration, cos)
+        return Knuckle(arm, R * pin + arm, speed, acceleration, cos, slope)
 
     def _link(self, knuckle: Knuckle) -> Link:
         """Return how the link rod lies: sin ψ_l = (Im z − e)/l."""
@@ -240,9 +241,7 @@ class LinkedPiston(Mechanism):
     def turning_on_master(self, angle: CrankAngle) -> Number:
         """Return ψ_l′ − ψ′, at which the link rod turns on its knuckle pin."""
         knuckle = self._knuckle_at(angle)
-        seen = (angle.cos + 1j * angle.sin) * self._line
-        slope = self.crank * seen.real / (self.master.rod * knuckle.cos_master)
-        turning: Number = self._link(knuckle).slope - slope
+        turning: Number = self._link(knuckle).slope - knuckle.slope_master
         return turning
 
     def master_direction(self, angle: CrankAngle) -> Any:

@@ -196,7 +196,7 @@ class Drive:
         """The cylinders whose link rods are on the master rod of this one; of many machines with their numbers."""
         links = []
         for cylinder in self.machine.cylinders:
-            if cylinder.link_rod is not None and cylinder.link_rod.master == self.name:
+            if cylinder.hangs_on(self.name):
                 links.append(Drive(self.machine, cylinder, self.count, self.index))
         return tuple(links)
 

@@ -81,12 +81,16 @@ def _over_driving(forces: CylinderForces, lost: Any) -> Any:
     return lost / where(driving == 0, math.nan, driving)
 
 
-def _per_second(forces: CylinderForces, work: Any) -> Any:
-    """Return the power in W of a work in J per cycle; None without a speed, and at rest."""
-    speed = forces.drive.machine.speed
+def per_second(work: Any, speed: Any, revolutions: int) -> Any:
+    """Return the power in W of a work in J in so many turns; None without a speed in turns per second, and at rest."""
     if work is None or speed is None or every(speed == 0):
         return None
-    return work * speed / forces.drive.revolutions
+    return work * speed / revolutions
+
+
+def _per_second(forces: CylinderForces, work: Any) -> Any:
+    """Return the power in W of a work in J per cycle of a cylinder."""
+    return per_second(work, forces.drive.machine.speed, forces.drive.revolutions)
 
 
 def _rubs_at_one_place(forces: CylinderForces) -> bool:

@@ -8,10 +8,10 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from kurbel.machine import Machine
-from kurbel.numerics.arithmetic import every, some, total, where
+from kurbel.numerics.arithmetic import every, total, where
 from kurbel.quantity import value
 from kurbel.solver.figures import Results
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces, per_second
 
 _PRINTED = ("flywheel", "forces")
 """The commands that have the key values; limits take those of the first."""
@@ -132,10 +132,7 @@ class TotalWork(Results):
 
     def per_second(self, work: Any) -> Any:
         """Return the power in W of a work in J per cycle of the machine; None without a speed, and at rest."""
-        speed = self.machine.speed
-        if work is None or speed is None or not some(speed != 0):
-            return None
-        return work * speed / self.machine.revolutions
+        return per_second(work, self.machine.speed, self.machine.revolutions)
 
     @cached_property
     def useful_share(self) -> Any:

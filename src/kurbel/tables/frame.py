@@ -110,8 +110,9 @@ class Subject(NamedTuple):
             return
         for quantity, of, unless, _ in self.results.rows.key_values.values():
             is_printed = command in quantity.commands and command not in quantity.on_request
-            is_idle = bool(unless and unless(self.results)) if is_printed else True
-            value = None if is_idle else of(self.results)
+            if not is_printed or (unless and unless(self.results)):
+                continue
+            value = of(self.results)
             if value is not None:
                 yield quantity, value
 

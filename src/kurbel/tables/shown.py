@@ -130,8 +130,9 @@ class Places(NamedTuple):
     def shown(self, system: str) -> PlaceTable:
         """Return the table in units; orders and modes have as many decimals as they need, distances three."""
         columns = list[Column]()
-        largest = self._largest_by_kind() if self.alone else {}
-        for quantity, values in self._columns().items():
+        values_of = self._columns()
+        largest = _largest_by_kind(values_of) if self.alone else {}
+        for quantity, values in values_of.items():
             column = shown_column(quantity, values, system, largest=largest.get(quantity.kind, 0.0))
             columns.append(
                 column._replace(
@@ -164,13 +165,14 @@ class Places(NamedTuple):
                 columns[quantity] = [values.get(id) for _, values in self.rows]
         return columns
 
-    def _largest_by_kind(self) -> dict[str, float]:
-        """Return the largest value of all columns of a kind, in SI."""
-        largest: dict[str, float] = {}
-        for quantity, values in self._columns().items():
-            sizes = (abs(value or 0.0) for value in values)
-            largest[quantity.kind] = max(largest.get(quantity.kind, 0.0), *sizes)
-        return largest
+
+def _largest_by_kind(columns: Mapping[Quantity, Sequence[float | None]]) -> dict[str, float]:
+    """Return the largest value of all columns of a kind, in SI."""
+    largest: dict[str, float] = {}
+    for quantity, values in columns.items():
+        sizes = (abs(value or 0.0) for value in values)
+        largest[quantity.kind] = max(largest.get(quantity.kind, 0.0), *sizes)
+    return largest
 
 
 def _decimals(quantity: Quantity, values: Iterable[float | None]) -> int | None:

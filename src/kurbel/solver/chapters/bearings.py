@@ -644,7 +644,7 @@ class ShaftBearings:
         cylinder, shaft = forces.drive.cylinder, self.machine.crankshaft
         friction = cylinder.friction
         of = f" of {forces.drive.name}" if len(self._cylinders) > 1 else ""
-        links = [other for other in self._cylinders if _hangs_on(other, forces)]
+        links = [other for other in self._cylinders if other.drive.cylinder.hangs_on(cylinder.name)]
         pin: Size = friction.crank_pin_diameter if friction else None, None
         if cylinder.link_rod is not None:
             yield KnucklePin(f"knuckle pin{of}", forces)
@@ -677,12 +677,6 @@ class ShaftBearings:
         names = "AB" if count == 2 else range(1, count + 1)
         for number, name in enumerate(names):
             yield MainBearing(f"bearing {name}", number, self.line, self._cylinders, size)
-
-
-def _hangs_on(forces: CylinderForces, master: CylinderForces) -> bool:
-    """Return whether a cylinder has its link rod on the master rod of another one."""
-    link_rod = forces.drive.cylinder.link_rod
-    return link_rod is not None and link_rod.master == master.drive.name
 
 
 def _loads_pins(forces: CylinderForces) -> bool:
