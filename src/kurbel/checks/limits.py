@@ -184,8 +184,16 @@ def margins(entries: Iterable[CheckEntry]) -> dict[str, dict[str, float]]:
             continue
         of_limit = smallest.setdefault(str(entry.path[-1]), {})
         of_limit[figure.case] = min(figure.margin, of_limit.get(figure.case, figure.margin))
-    has_cases = any(case for of_limit in smallest.values() for case in of_limit)
+    has_cases = any(load_cases_of(smallest))
     return smallest if has_cases else {}
+
+
+def load_cases_of(table: Mapping[str, Mapping[str, float]]) -> list[str]:
+    """Return the load cases of a table of margins, in the order in which they first occur; '' is the machine itself."""
+    cases = dict[str, None]()
+    for of_limit in table.values():
+        cases |= dict.fromkeys(of_limit)
+    return list(cases)
 
 
 def margin_text(margin: float | None) -> str:

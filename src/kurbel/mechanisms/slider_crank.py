@@ -188,12 +188,11 @@ class SliderCrank(Mechanism):
         """(L − R + e)/L and (L − R − e)/L, the least 1 − sin ψ and 1 + sin ψ; (L + R + e)/L and (L + R − e)/L."""
         if every(self.rod == math.inf):
             return 1.0, 1.0, 1.0, 1.0
-        sums = (
-            (crank, offset)
-            for crank in (-self.crank, self.crank)
-            for offset in (self.offset, -self.offset)
-        )
-        return tuple(total(self.rod, *both) / self.rod for both in sums)
+        gaps = []
+        for crank in (-self.crank, self.crank):
+            for offset in (self.offset, -self.offset):
+                gaps.append(total(self.rod, crank, offset) / self.rod)
+        return tuple(gaps)
 
     @cached_property
     def _reaches(self) -> tuple[float, float]:

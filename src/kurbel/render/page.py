@@ -244,7 +244,8 @@ def _book(
     rows = list(heads)
     for _, columns in bands:
         rows += columns
-    cell = max((width(text) for row in rows for text in row.cells), default=0) + _GAP
+    texts = chain.from_iterable(row.cells for row in rows)
+    cell = max(map(width, texts), default=0) + _GAP
     side = _Side(
         _with_gap(name for name, _ in bands if named_beside),
         _with_gap(row.symbol for row in rows),

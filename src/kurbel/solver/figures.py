@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
+from itertools import chain
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -115,7 +116,7 @@ def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mappin
     rows += (QuantityRow(offer.quantity, offer.of, offer.unless) for offer in offers)
 
     # the angle is a column of every command that has another
-    commands = dict.fromkeys(word for row in rows for word in row.quantity.commands)
+    commands = dict.fromkeys(chain.from_iterable(row.quantity.commands for row in rows))
     phi = QuantityRow(PHI._replace(commands=tuple(commands)), lambda state: state.phi)
     return _COLUMN_ROWS.setdefault((state, offers), _in_order([phi, *rows], state))
 

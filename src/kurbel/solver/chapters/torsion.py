@@ -526,11 +526,9 @@ class ShaftVibration(Results):
         critical, working = list[Critical](), self.machine.speed
         for mode in range(1, min(modes, self.last) + 1):
             angles, omega = self.holzer(mode).angles, float(self.modes.omegas[mode - self.first])
-            at_cranks = {
-                name: float(angles[i])
-                for i, mass in enumerate(self.line.masses)
-                for name in mass.cylinders
-            }
+            at_cranks = dict[str, float]()
+            for mass, angle in zip(self.line.masses, angles.tolist()):
+                at_cranks |= dict.fromkeys(mass.cylinders, angle)
             cranks = [
                 (at_cranks[cylinder.name], crank_lag(cylinder, self.machine.cylinders[0]))
                 for cylinder in self.machine.cylinders
