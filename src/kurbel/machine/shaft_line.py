@@ -179,7 +179,9 @@ class ShaftPart(Record):
         if self.word == GROUND:
             return GROUND
         given = self._given_keys()
-        return given[0][0] if given else "mass"
+        if not given:
+            return "mass"
+        return given[0][0]
 
     @property
     def has_inertia(self) -> bool:

@@ -377,4 +377,6 @@ def _difference(first: float | None, second: float | None) -> str:
     percent = 100 * (second - first) / abs(first)
     if not percent:
         return "0 %"
-    return f"{percent:+.2f} %" if abs(percent) < 100 else f"{percent:+.0f} %"
+    if abs(percent) < 100:
+        return f"{percent:+.2f} %"
+    return f"{percent:+.0f} %"

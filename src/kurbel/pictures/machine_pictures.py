@@ -411,4 +411,6 @@ def _slenderness(panel: Panel) -> float:
     width = float(np.nanmax(locus.x) - np.nanmin(locus.x))
     height = float(np.nanmax(locus.y) - np.nanmin(locus.y))
     short, long = sorted((width, height))
-    return long / short if short else math.inf
+    if short:
+        return long / short
+    return math.inf

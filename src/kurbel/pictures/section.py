@@ -139,7 +139,9 @@ def _drawn_angle(trains: Sequence[Train]) -> float:
         return 90.0
     is_upright = len(banks) > 1 or not first.crosshead or len(trains) > 2
     middle = sum(banks) / len(banks)
-    return 90.0 - middle if is_upright else 0.0
+    if not is_upright:
+        return 0.0
+    return 90.0 - middle
 
 
 def _row(trains: Sequence[Train]) -> dict[float, Train]:
@@ -256,7 +258,9 @@ def _footnote(trains: Sequence[Train], row: dict[float, Train], wheel: str, behi
     if any(piston.lever_ratio != 1 for piston in pistons):
         hidden.append("pistons by a lever")
     note = f"To scale: {scale}. Drawn by shares: {', '.join((*shares, 'all else'))}."
-    return f"{note} Not drawn: {', '.join(hidden)}." if hidden else note
+    if not hidden:
+        return note
+    return f"{note} Not drawn: {', '.join(hidden)}."
 
 
 # the forces

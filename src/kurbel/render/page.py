@@ -281,7 +281,9 @@ def _book(
 def _with_gap(texts: Iterable[str]) -> int:
     """Return the width of a column of texts with its gap; without a text it takes no room."""
     wide = max(map(width, texts), default=0)
-    return wide + _GAP if wide else 0
+    if not wide:
+        return 0
+    return wide + _GAP
 
 
 class _Side(NamedTuple):

@@ -129,7 +129,9 @@ def zusammenstellung(
     has_motion = "acceleration_factor" in ids or "velocity_factor" in ids
     whole = Part("", (), place_tables=(_roots(ratios),)) if has_motion else None
     report = Report(title, "table", None, "ratios", parts, whole, mirrored)
-    return _with_printed(report, formula) if compare else report
+    if not compare:
+        return report
+    return _with_printed(report, formula)
 
 
 def _ids_of(rows: Iterable[str]) -> list[str]:

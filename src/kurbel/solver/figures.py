@@ -69,7 +69,9 @@ class NotebookView:
     as_html: ClassVar[Of[str] | None] = None
 
     def _repr_html_(self) -> str | None:
-        return NotebookView.as_html(self) if NotebookView.as_html else None
+        if not NotebookView.as_html:
+            return None
+        return NotebookView.as_html(self)
 
 
 # columns
@@ -96,7 +98,9 @@ class AtAngles:
     def __getitem__(self, id: str) -> Any:
         """Return a column by its id; None for one that there is not."""
         row = self.rows.get(id)
-        return None if row is None else row.of(self)
+        if row is None:
+            return None
+        return row.of(self)
 
 
 _COLUMN_ROWS: dict[tuple[type, tuple[Offer, ...]], Mapping[str, QuantityRow]] = {}
@@ -202,7 +206,9 @@ class PartResults(Computed[V]):
 
         def of_part(function: Formula, results: object) -> Any:
             part = self.__get__(results)
-            return None if part is None else function(part)
+            if part is None:
+                return None
+            return function(part)
 
         for row in rows:
             unless = self.unless
@@ -239,7 +245,9 @@ class ExtremesOfColumns:
 
         def extreme(column: str, end: str, results: Any) -> Extreme | None:
             extremes = results.extremes_of(column)
-            return None if extremes is None else self.ENDS[end](extremes)
+            if extremes is None:
+                return None
+            return self.ENDS[end](extremes)
 
         def repeats(column: str, end: str, results: Any) -> bool:
             # the largest magnitude is that of the largest or the smallest value
@@ -440,7 +448,9 @@ def result_rows(
 
 def result(values: Array, count: int | None) -> Any:
     """Return values (machines,) as they are for many machines, and as a float for one, whose count is None."""
-    return float(values[0]) if count is None else values
+    if count is not None:
+        return values
+    return float(values[0])
 
 
 def crank_angles(degrees: object) -> Array:

@@ -81,7 +81,9 @@ class Subject(NamedTuple):
         if self.results:
             return self.results.lists
         # columns alone are those of a shaft segment
-        return every_quantity() if self.at else Lists((), ())
+        if self.at:
+            return every_quantity()
+        return Lists((), ())
 
     def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""

@@ -146,7 +146,9 @@ class Report(NamedTuple):
     @property
     def all_parts(self) -> tuple[Part, ...]:
         """The parts, and the whole machine after them."""
-        return self.parts if self.whole is None else (*self.parts, self.whole)
+        if self.whole is None:
+            return self.parts
+        return (*self.parts, self.whole)
 
     @property
     def printed_tables(self) -> Iterator[PlaceTable]:
@@ -384,7 +386,9 @@ def _left_out_in_short(parts: Iterable[Part]) -> tuple[str, ...]:
     for left_out in all_left_out:
         reasons.setdefault(left_out.why, []).append(left_out.what)
     texts = [f"{', '.join(what)} ({why})" for why, what in reasons.items()]
-    return (f"Left out: {'; '.join(texts)}.",) if texts else ()
+    if not texts:
+        return ()
+    return (f"Left out: {'; '.join(texts)}.",)
 
 
 def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) -> Report:

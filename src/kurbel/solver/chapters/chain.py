@@ -527,7 +527,9 @@ class Modes:
             is_found = ~is_outside & (np.nextafter(low, high) == high)
             frequencies[left[is_found]] = high[is_found]
             left, low, high, margin = (row[~is_found] for row in (left, low, high, margin))
-        return frequencies if self.chain.is_held else np.append(0.0, frequencies)
+        if self.chain.is_held:
+            return frequencies
+        return np.append(0.0, frequencies)
 
     def _guessed(self) -> Array:
         """Return the elastic natural frequencies about, singular values of K^½ J^{−½}, inertias lumped."""
