@@ -18,7 +18,7 @@ from kurbel.solver.state import State
 
 if TYPE_CHECKING:
     from kurbel.machine.shaft_line import ShaftLine
-    from kurbel.solver.chapters.bearings import BearingColumns
+    from kurbel.solver.chapters.bearing import BearingColumns
     from kurbel.solver.flywheel import TurningState
 
 _MOST_NUMBERED = 24
