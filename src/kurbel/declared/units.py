@@ -174,6 +174,15 @@ KINDS = {
         "psi/deg",
         "10 bar/deg",
     ),
+    "energy_rise": Kind(
+        0,
+        1e18,
+        "J, kJ, kgf m, lbf ft / deg, rad",
+        "J/deg",
+        ("J/deg", "kJ/deg"),
+        "kgf m/deg",
+        "lbf ft/deg",
+    ),
     "pressure_velocity": Kind(
         0,
         1e18,
@@ -335,7 +344,7 @@ _ZEROS = {"°C": 273.15, "°F": 459.67}
 _DEGREES: dict[str, UnitFactor] = {"rad": (180, math.pi)}
 _POUND_OF_FORCE: dict[str, UnitFactor] = {"lb": (_LBF, 1)}
 _ELSEWHERE: dict[str, dict[str, UnitFactor]] = {
-    **dict.fromkeys(("angle", "volume_rise"), _DEGREES),
+    **dict.fromkeys(("angle", "volume_rise", "energy_rise"), _DEGREES),
     # only a force gives a pressure or a torque: there the pound of everyday English can mean nothing else
     **dict.fromkeys(("pressure", "stress", "torque", "spring", "spring_rate"), _POUND_OF_FORCE),
     "pressure_rise": {**_DEGREES, **_POUND_OF_FORCE},

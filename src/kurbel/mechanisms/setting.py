@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import Mechanism
@@ -37,6 +39,11 @@ class Setting(NamedTuple):
         """Crank angle in degrees at which the chamber is smallest."""
         inner, outer = self.mechanism.dead_centres()
         return inner if self.head_end else outer
+
+    def after_dead_centre(self, degrees: Array) -> Array:
+        """Return crank angles in degrees as those from the chamber's own (firing) dead centre, −½ to ½ cycle."""
+        after = degrees - self.own_dead_centre
+        return np.remainder(after + self.cycle / 2, self.cycle) - self.cycle / 2
 
     def stroke_fraction(self, after: Array) -> Array:
         """Return the fraction of the stroke from the chamber's smallest volume, so many degrees after it."""

@@ -178,7 +178,7 @@ def whole_if_integral(value: CellValue) -> CellValue:
 
 # texts
 
-FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
+FORMATS = ("table", "csv", "json", "xlsx", "markdown", "html", "latex")
 LAYOUTS = ("book", "rows")
 _ASCII = {
     **GREEK, "∮": "integral ", "₀": "0",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.arithmetic import spread
 from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
-from kurbel.solver.gas import PistonGas, Pressure
+from kurbel.solver.gas import HeatOfEnd, PistonGas, Pressure
 from kurbel.solver.motion import MotionColumns
 
 _BOTH = ("motion", "forces")
@@ -45,6 +45,13 @@ def _own_volume(state: Chambers, end: str) -> Number | None:
 def _own_rise(state: Chambers, end: str) -> Array | None:
     chamber = _own_end(state, end)
     return chamber.rise(state.phi) if chamber and chamber.traced else None
+
+
+def _own_heat(state: Chambers, column: Callable[[HeatOfEnd, Array], Array]) -> Array | None:
+    """Return a column of the heat release; None where the cylinder's own piston has none."""
+    gas = state.drive.own_gas
+    heat = gas.heat if gas else None
+    return None if heat is None else column(heat, state.phi)
 
 
 def _opening(state: Chambers, end: str) -> Number | None:
@@ -123,6 +130,20 @@ class Chambers(MotionColumns):
         "pressure_rise",
         "Rise of the * pressure, over 1 deg",
         of=_own_rise,
+        on_request=("forces",),
+    )
+    dQ = value(
+        "dQ/dφ",
+        "energy_rise",
+        "Heat released per degree of crank angle, of a trace over 1 deg, less what the walls take",
+        lambda state: _own_heat(state, HeatOfEnd.rate),
+        on_request=("forces",),
+    )
+    x_b = value(
+        "x_b",
+        "ratio",
+        "Burnt share: heat released so far over all that is released",
+        lambda state: _own_heat(state, HeatOfEnd.burnt),
         on_request=("forces",),
     )
     P_gas = value(

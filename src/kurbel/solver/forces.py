@@ -37,6 +37,7 @@ from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
 
 if TYPE_CHECKING:
+    from kurbel.solver.heat_release import HeatRelease
     from kurbel.solver.indicated import Indicated
     from kurbel.solver.valve import ValveGear
 
@@ -45,6 +46,12 @@ def _indicated() -> type[Indicated]:
     from kurbel.solver.indicated import Indicated
 
     return Indicated
+
+
+def _heat_release() -> type[HeatRelease]:
+    from kurbel.solver.heat_release import HeatRelease
+
+    return HeatRelease
 
 
 def _valve_gear() -> type[ValveGear]:
@@ -270,6 +277,15 @@ class CylinderForces(SampledCylinder, Results):
         """Key values of the traces of the cylinder's own piston."""
         gas = self.drive.own_gas
         return _indicated()(gas) if gas and gas.has_trace else None
+
+    @part(
+        _heat_release,
+        there=lambda forces: bool(forces.drive.own_gas and forces.drive.own_gas.releases_heat),
+    )
+    def heat_release(self) -> HeatRelease | None:
+        """Key values of the heat release over the cylinder's own piston."""
+        gas = self.drive.own_gas
+        return _heat_release()(gas) if gas and gas.releases_heat else None
 
     @part(Brake)
     def brake(self) -> Brake | None:
