@@ -576,7 +576,9 @@ def kinds() -> tuple[str, ...]:
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
     names = _names_of(kind)
-    return (*names, *ZEROED_UNITS) if kind == "pressure" else names
+    if kind != "pressure":
+        return names
+    return (*names, *ZEROED_UNITS)
 
 
 def listed_units(kind: str) -> tuple[str, ...]:

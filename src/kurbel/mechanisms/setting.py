@@ -27,12 +27,16 @@ class Setting(NamedTuple):
     @property
     def base(self) -> float:
         """Pressure in Pa that is subtracted from figures of the chamber to get gauge pressures."""
-        return self.ambient if self.absolute else 0.0
+        if not self.absolute:
+            return 0.0
+        return self.ambient
 
     @property
     def lift(self) -> float:
         """Pressure in Pa that is added to figures of the chamber to get absolute pressures."""
-        return 0.0 if self.absolute else self.ambient
+        if self.absolute:
+            return 0.0
+        return self.ambient
 
     @property
     def own_dead_centre(self) -> float:
@@ -51,4 +55,6 @@ class Setting(NamedTuple):
         displaced = (
             self.mechanism.coordinate(angle) - self.mechanism.start
         ) / self.mechanism.stroke
-        return displaced if self.head_end else 1 - displaced
+        if self.head_end:
+            return displaced
+        return 1 - displaced

@@ -13,7 +13,7 @@ from kurbel.solver.forces import CylinderForces
 from kurbel.tables.tables import LeftOut
 
 if TYPE_CHECKING:
-    from kurbel.solver.chapters.bearings import Bearing
+    from kurbel.solver.chapters.bearing import Bearing
 
 _IN_EFFORT = ("gas force", "piston rod", "inertia", "weight", "friction")
 """Stages of a cylinder that its turning effort consists of."""

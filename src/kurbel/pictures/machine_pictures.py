@@ -18,7 +18,7 @@ from kurbel.solver.state import State
 
 if TYPE_CHECKING:
     from kurbel.machine.shaft_line import ShaftLine
-    from kurbel.solver.chapters.bearings import BearingColumns
+    from kurbel.solver.chapters.bearing import BearingColumns
     from kurbel.solver.flywheel import TurningState
 
 _MOST_NUMBERED = 24
@@ -198,6 +198,10 @@ def torque_orders(source: Source) -> Iterator[Panel]:
         yield _bars(orders, parts, name, "torque", "left: gas, weight, friction; right: inertia")
 
 
+def _has_bars(panel: Panel) -> bool:
+    return any(shade.high.any() for shade in panel.shades)
+
+
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
     """Radii of the circles on which unbalanced force and moment turn, order by order, with the shaft and against it."""
     omega = source.results.omega
@@ -214,7 +218,7 @@ def unbalanced_orders(source: Source) -> Iterator[Panel]:
         panels.append(_bars(free.orders, radii, Words(name, words="radius"), kind, title))
 
     # what is balanced has nothing to show, unless all is
-    with_bars = [panel for panel in panels if any(shade.high.any() for shade in panel.shades)]
+    with_bars = [panel for panel in panels if _has_bars(panel)]
     yield from with_bars or panels[:1]
 
 
@@ -405,4 +409,6 @@ def _slenderness(panel: Panel) -> float:
     width = float(np.nanmax(locus.x) - np.nanmin(locus.x))
     height = float(np.nanmax(locus.y) - np.nanmin(locus.y))
     short, long = sorted((width, height))
-    return long / short if short else math.inf
+    if short:
+        return long / short
+    return math.inf

@@ -59,7 +59,9 @@ def _opening(state: Chambers, end: str) -> Number | None:
     if valve is None or w is None:
         return None
     head, crank = valve.ends
-    return head.opening_at(w) if end == "head" else crank.opening_at(-w)
+    if end == "head":
+        return head.opening_at(w)
+    return crank.opening_at(-w)
 
 
 class Chambers(MotionColumns):
@@ -168,7 +170,9 @@ class Chambers(MotionColumns):
     def valve_displacement(self) -> Number | None:
         """Displacement w of the valve in m; None without one."""
         valve = self.drive.cylinder.valve
-        return valve.displacement(self.angle) if valve else None
+        if not valve:
+            return None
+        return valve.displacement(self.angle)
 
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""
@@ -200,7 +204,9 @@ class Chambers(MotionColumns):
         counted = [
             force * spread(share, self.drive.index) for force, share in each if share is not False
         ]
-        return sum(counted) if counted else None
+        if not counted:
+            return None
+        return sum(counted)
 
     P_driving = value(
         "P_gas+",

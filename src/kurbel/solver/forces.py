@@ -173,7 +173,9 @@ class CylinderForces(SampledCylinder, Results):
     def valve_gear(self) -> ValveGear | None:
         """What the valve does."""
         cylinder = self.drive.cylinder
-        return _valve_gear()(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
+        if not cylinder.valve:
+            return None
+        return _valve_gear()(cylinder.valve, cylinder, self.motion)
 
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")
@@ -429,7 +431,9 @@ class CylinderForces(SampledCylinder, Results):
             values = self.sampled(name)
             if values is not None:
                 loads[name] = values
-        return RodLoads(self.drive, self.pieces, loads) if loads else None
+        if not loads:
+            return None
+        return RodLoads(self.drive, self.pieces, loads)
 
     @shared
     def answers(self) -> dict[str, object]:
@@ -704,4 +708,6 @@ def _rows(
         rows = rows.changed(Quantity.of_ram)
     elif absolute:
         rows = rows.changed(Quantity.absolute)
-    return rows if guided else rows.changed(Quantity.without_guide)
+    if guided:
+        return rows
+    return rows.changed(Quantity.without_guide)

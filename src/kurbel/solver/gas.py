@@ -221,7 +221,9 @@ class CardPressure:
     def area(self) -> Number:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
         areas = np.array([process.area for process in self._processes])
-        return float(areas[0]) if len(areas) == 1 else areas[self._which]
+        if len(areas) == 1:
+            return float(areas[0])
+        return areas[self._which]
 
     @cached_property
     def highest(self) -> Extreme:
