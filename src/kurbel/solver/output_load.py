@@ -11,15 +11,12 @@ from __future__ import annotations
 
 from functools import cached_property
 
-import numpy as np
-
-from kurbel.arrays import Array, Number
+from kurbel.arrays import Indices, Number
 from kurbel.machine.load import Force
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.arithmetic import spread
 from kurbel.numerics.pieces import Angles
-from kurbel.solver.chambers import Chambers
 from kurbel.solver.gas import CardPressure
 
 
@@ -38,16 +35,13 @@ class OutputLoad:
             setting = Setting(mechanism, 360.0, head_end=True, ambient=0.0, absolute=False)
             self.profile = CardPressure(force.profile, setting, count, None)
 
-    def at(self, state: Chambers) -> Array:
-        """Return the force in N at crank angles, positive where the displacement rises."""
-        index = state.drive.index
+    def without_points(self, displacement: Number, index: Indices | None) -> Number:
+        """Return constant part and spring in N at displacements of the output; index: the machine of each, if many."""
         force = spread(self.force.constant + self.force.preload, index)
-        if self.force.spring is not None:
-            travel = state.displacement * spread(self.lever, index)
-            force = force - travel * spread(self.force.spring, index)
-        if self.profile is not None:
-            force = force + state.pressure(self.profile)
-        return np.broadcast_to(np.asarray(force, dtype=float), state.phi.shape)
+        if self.force.spring is None:
+            return force
+        travel = displacement * spread(self.lever, index)
+        return force - travel * spread(self.force.spring, index)
 
     @property
     def starts(self) -> list[Angles]:

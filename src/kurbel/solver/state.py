@@ -171,14 +171,23 @@ class State(Chambers):
         "Force opposing the motion of a ram",
         lambda state: state.resistance if state.mechanism.slides else None,
     )
-    P_load = value(
+
+    @column(
         "P_L",
         "force",
-        "Load `force` on what slides, positive as P is; on what swings at its lever, positive where θ rises",
-        lambda state: state.drive.load and state.drive.load.at(state),
         extremes=("forces",),
         called="load on what slides or swings",
     )
+    def P_load(self) -> Array | None:
+        """Load `force` on what slides, positive as P is; on what swings at its lever, positive where θ rises."""
+        load = self.drive.load
+        if load is None:
+            return None
+        force = load.without_points(self.displacement, self.drive.index)
+        if load.profile is not None:
+            force = force + self.pressure(load.profile)
+        return self.filled(force)
+
     P = value(
         "P",
         "force",
