@@ -22,14 +22,16 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 from test_torsion import at_random, eigenvalues
 
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftSegment
-from kurbel.solver.chapters.chain import Chain, Modes
-from kurbel.solver.chapters.torsion import Excitation, Vibration
+from kurbel.solver.chapters.chain import Chain
+from kurbel.solver.chapters.excitation import Excitation, Vibration
+from kurbel.solver.chapters.natural_modes import Modes
 
 
 def seconds(work: Callable[[], object]) -> float:
     """Median time of the processor for a piece of work."""
+    runs = int(sys.argv[1]) if len(sys.argv) > 1 else 5
     times = []
-    for _ in range(int(sys.argv[1]) if len(sys.argv) > 1 else 5):
+    for _ in range(runs):
         begin = time.process_time()
         work()
         times.append(time.process_time() - begin)

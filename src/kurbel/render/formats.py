@@ -36,7 +36,9 @@ def _lines(
 ) -> Iterator[Line]:
     from kurbel.render.page import fitting, page_lines
 
-    return page_lines(report, look) if first is None else fitting(report, look, first, named)
+    if first is None:
+        return page_lines(report, look)
+    return fitting(report, look, first, named)
 
 
 class Output(NamedTuple):

@@ -108,7 +108,9 @@ def _for_people(titles: Titles, look: Look, rows: Sequence[Design]) -> Iterator[
 def _cell(value: Cell, look: Look) -> str:
     """Return a value as people read it, its number to four digits."""
     if isinstance(value, str):
-        return look.unit(value) if isinstance(value, Unit) else look.text(value)
+        if isinstance(value, Unit):
+            return look.unit(value)
+        return look.text(value)
     if isinstance(value, tuple):
         return " ".join(_cell(number, look) for number in value)
     if value is None:
