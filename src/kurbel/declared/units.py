@@ -140,6 +140,16 @@ KINDS = {
         imperial="lbf ft/rad",
         written="2000 kN m/rad",
     ),
+    "spring_rate": Kind(
+        1e-12,
+        1e18,
+        f"{_FORCES} / m, cm, mm, in, ft; lb/in, lb/ft",
+        "N/m",
+        "N/mm",
+        "kgf/mm",
+        "lbf/in",
+        written="50 N/mm",
+    ),
     "damping": Kind(
         1e-15,
         1e18,
@@ -356,7 +366,7 @@ _POUND_OF_FORCE: dict[str, UnitFactor] = {"lb": (_LBF, 1)}
 _ELSEWHERE: dict[str, dict[str, UnitFactor]] = {
     **dict.fromkeys(("angle", "volume_rise", "energy_rise"), _DEGREES),
     # only a force gives a pressure or a torque: there the pound of everyday English can mean nothing else
-    **dict.fromkeys(("pressure", "stress", "torque", "spring"), _POUND_OF_FORCE),
+    **dict.fromkeys(("pressure", "stress", "torque", "spring", "spring_rate"), _POUND_OF_FORCE),
     "pressure_rise": {**_DEGREES, **_POUND_OF_FORCE},
     "speed": {"rad": (1, 2 * math.pi)},
     "stiffness": {"deg": (math.pi, 180)},

@@ -478,7 +478,9 @@ class Points(Form):
         length = len(names)
         self._called, self._count = {2: ("pair", "two"), 3: ("triple", "three")}[length]
         self._pattern = f"[{', '.join(names)}]"
-        sample = "[[0, 1], [1, 2]]" if length == 2 else "[[1, 20, -5]]"
+        sample = "[[0, 1], [1, 2]]"
+        if length == 3:
+            sample = "[[1, 20, -5]]" if least == 1 else "[[0, 5, 0], [1, 8, 0]]"
         # the schema
         number: Schema = {"type": "number"}
         if ratio:
