@@ -214,7 +214,8 @@ class Panel(NamedTuple):
     """Two axes with what is on them; equal: both have one scale; plain: without axes.
 
     title: what distinguishes it from the other panels of its picture; bodies: parts of a machine, below the curves, in
-    the order in which they cover each other; footnote: what of them is to scale.
+    the order in which they cover each other; footnote: what of them is to scale. angle: the crank angle in degrees for
+    which it is drawn, where it was chosen.
     """
 
     x: Axis
@@ -228,6 +229,7 @@ class Panel(NamedTuple):
     bodies: tuple[Body, ...] = ()
     captions: tuple[Caption, ...] = ()
     footnote: str = ""
+    angle: float | None = None
 
     @property
     def places(self) -> tuple[list[Array], list[Array]]:
@@ -269,6 +271,17 @@ class Picture(NamedTuple):
         """The line above the picture."""
         title = f"{self.title}: {self.of}" if self.of else self.title
         return f"{self.machine}. {title}" if self.machine else title
+
+    @property
+    def rows(self) -> "list[Picture]":
+        """Its rows of panels, each as a picture of its own, the last one with the legend."""
+        rows = []
+        for start in range(0, len(self.panels), self.across):
+            row = self.panels[start : start + self.across]
+            rows.append(self._replace(panels=row, legend=()))
+        if rows:
+            rows[-1] = rows[-1]._replace(legend=self.legend)
+        return rows
 
 
 # a long report
@@ -358,7 +371,8 @@ class Section(NamedTuple):
 class Document(NamedTuple):
     """A report on one machine, or on several next to one another.
 
-    subtitles: what kind of machine each is; summary: what is on the first page.
+    subtitles: what kind of machine each is; summary: what is on the first page; prints_tables: whether the tables over
+    the crank angle are printed, too.
     """
 
     title: str
@@ -366,3 +380,4 @@ class Document(NamedTuple):
     summary: tuple[SectionItem, ...]
     sections: tuple[Section, ...]
     provenance: tuple[Provenance, ...]
+    prints_tables: bool = False
