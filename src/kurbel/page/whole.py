@@ -79,7 +79,7 @@ def _drawn(case: Case, kind: PictureKind, system: str, name: str = "") -> list[P
 @np.errstate(all="ignore")  # what overflows is refused by name
 def whole_report(
     case: Case,
-    given: KeyTexts,
+    key_texts: KeyTexts,
     system: str,
     step: float,
     progress: OnStep,
@@ -143,7 +143,7 @@ def whole_report(
     if contents.has(LEFT_OUT):
         sections.append(Section(LEFT_OUT, "Left out", tuple(_left_out(left_out))))
     if contents.has(INPUT):
-        sections.append(Section(INPUT, "Input as understood", tuple(_input(case, given))))
+        sections.append(Section(INPUT, "Input as understood", tuple(_input(case, key_texts))))
     return Document(
         machine.name,
         (subtitle_of(machine),),
@@ -214,11 +214,11 @@ def _without_motion(report: Report, case: Case) -> Report:
     return report.changed(of_forces)
 
 
-def _input(case: Case, given: KeyTexts) -> Iterator[Grid]:
+def _input(case: Case, key_texts: KeyTexts) -> Iterator[Grid]:
     """Yield the keys of the file with their meanings, and the results of a check of the machine."""
-    if given:
-        places = places_of(given)
-        rows = tuple((path, value, meaning(path, places)) for path, value in given)
+    if key_texts:
+        keys_by_path = places_of(key_texts)
+        rows = tuple((path, value, meaning(path, keys_by_path)) for path, value in key_texts)
         yield Grid("Given", ("Key", "Value", "Meaning"), rows)
     for part in checked(case).shown_once:
         entries = [entry for entry in part.entries if entry.severity != "warning"]
@@ -271,6 +271,7 @@ def _energy_terms(forces: CylinderForces) -> Iterator[tuple[str, float]]:
         yield f"Friction {joint}", -(friction.get(name) or 0.0)
     yield "Friction given as a force", -(friction.get("constant") or 0.0)
     yield "What the output works against", forces.resistance_work
+    yield "Load on the output", forces.load_work
 
 
 # two machines side by side
@@ -279,7 +280,7 @@ def _energy_terms(forces: CylinderForces) -> Iterator[tuple[str, float]]:
 @np.errstate(all="ignore")
 def side_by_side(
     cases: Sequence[Case],
-    given: Sequence[KeyTexts],
+    key_texts: Sequence[KeyTexts],
     system: str,
     progress: OnStep,
     contents: Contents = EVERYTHING,
@@ -293,7 +294,7 @@ def side_by_side(
         names = [f"{names[0]} (A)", f"{names[1]} (B)"]
     sections = []
     if contents.has(INPUT):
-        input_items = tuple(_differing_input(cases, given, names))
+        input_items = tuple(_differing_input(cases, key_texts, names))
         sections.append(Section(INPUT, "What was given differently", input_items))
     for command in REPORTS:
         progress(command.title.lower())
@@ -314,14 +315,14 @@ def side_by_side(
 
 
 def _differing_input(
-    cases: Sequence[Case], given: Sequence[KeyTexts], names: Sequence[str]
+    cases: Sequence[Case], key_texts: Sequence[KeyTexts], names: Sequence[str]
 ) -> Iterator[SectionItem]:
     """Yield which machine is that of which file, and the keys with other values in both."""
     files = [case.machine.origin.name for case in cases if case.machine.origin]
     if len(files) == len(names):
         texts = [f"{name} is that of {file}" for name, file in zip(names, files)]
         yield "; ".join(texts) + "."
-    left, right = map(dict, given)
+    left, right = map(dict, key_texts)
     rows = []
     for key in dict.fromkeys((*left, *right)):
         if left.get(key) != right.get(key):
@@ -352,7 +353,9 @@ def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Ite
     yield from _pairs(cases, "", names, system)
 
     # the same facts of both, in the order of the first
-    ids = dict.fromkeys(id for case in cases for id in facts_of(case))
+    ids = dict[str, None]()
+    for case in cases:
+        ids |= dict.fromkeys(facts_of(case))
     titles: dict[Quantity, str] = {}
     numbers = []
     for case in cases:
@@ -439,4 +442,6 @@ def _difference(first: float | None, second: float | None) -> str:
     percent = 100 * (second - first) / abs(first)
     if not percent:
         return "0 %"
-    return f"{percent:+.2f} %" if abs(percent) < 100 else f"{percent:+.0f} %"
+    if abs(percent) < 100:
+        return f"{percent:+.2f} %"
+    return f"{percent:+.0f} %"
