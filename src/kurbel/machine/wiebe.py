@@ -28,7 +28,7 @@ _MOST_HEAT = 1e9
 
 
 class Wiebe(EngineCard, Record):
-    """An engine that burns by x_b = 1 − exp(−a ((θ − θ_s)/Δθ)^n), with polytropic compression and expansion.
+    """An engine that burns by x_b = 1 − exp(−a ((θ − θ_s)/Δθ)^(m+1)), with polytropic compression and expansion.
 
     heat: in J per cycle, of the fuel; heat_ratio: κ in dQ = V dp/(κ − 1) + …, None for the exponent of the compression.
     """
@@ -58,7 +58,12 @@ class Wiebe(EngineCard, Record):
         usual="42.7 MJ/kg of diesel oil, 42 to 44 of petrol",
     )
     efficiency: float = field(
-        "ratio", "Share of that heat that the combustion releases", default=1.0, above=0, most=1
+        "ratio",
+        "Share of that heat that the combustion releases",
+        default=1.0,
+        above=0,
+        most=1,
+        example="0.95",
     )
     wall_loss: float = field(
         "ratio",
@@ -86,15 +91,17 @@ class Wiebe(EngineCard, Record):
         default=5.0,
         above=0,
         most=100,
+        example="6.9",
         usual="5, of 99.3 %, to 6.9, of 99.9 %",
     )
     form_exponent: float = field(
         "ratio",
-        "Exponent n of the function, m + 1 of Wiebe's m",
-        "n",
+        "Exponent of the function, Wiebe's m plus 1",
+        "m+1",
         default=3.0,
         least=1,
         most=20,
+        example="2.5",
         usual="3; 1.5 to 2.5 of Diesel engines",
     )
     runs_on: bool = field(
@@ -128,14 +135,14 @@ class Wiebe(EngineCard, Record):
         return self.heat * self.efficiency * (1 - self.wall_loss)
 
     def burnt(self, after: Array, expansion: Number) -> Any:
-        """Return 1 − exp(−a s^n) at degrees after the dead centre, s = (θ − θ_s)/Δθ; expansion: degrees of its stroke."""
+        """Return 1 − exp(−a s^(m+1)) at degrees after the dead centre, s = (θ − θ_s)/Δθ; expansion: degrees of its stroke."""
         end = np.asarray(expansion) if self.runs_on else self.start + self.duration
         passed = np.minimum(after, end) - self.start
         share = np.maximum(passed / self.duration, 0.0)
         return -np.expm1(-self.shape * share**self.form_exponent)
 
     def angle_at(self, burnt: Number) -> Any:
-        """Return the degrees after the dead centre at which 1 − exp(−a s^n) is so much."""
+        """Return the degrees after the dead centre at which 1 − exp(−a s^(m+1)) is so much."""
         share = (-np.log1p(-np.asarray(burnt)) / self.shape) ** (1 / self.form_exponent)
         return self.start + self.duration * share
 
