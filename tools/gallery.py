@@ -39,6 +39,8 @@ TEACHING = {
     "odd-fire-v6": "free-orders",
     "offset-engine": "mechanism",
     "petrol-engine": "card-volume",
+    "press": "effort",
+    "pumpjack": "mechanism",
     "punch": "effort",
     "radial-three": "free-vectors",
     "scotch-yoke-pump": "mechanism",

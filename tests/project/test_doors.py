@@ -49,6 +49,7 @@ NEEDS = {
     "solver.heat_release": {"heat", "wiebe"},
     "solver.wiebe": {"wiebe"},
     "solver.indicated": {"trace"},
+    "solver.output_load": {"force"},
     "solver.shaft": {"crankshaft"},
     "solver.total_work": {"cylinders", "tandem"},
     "solver.valve": {"valve"},
