@@ -29,7 +29,7 @@ from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State, reduced_inertia
 
 if TYPE_CHECKING:
-    from kurbel.machine.turning import KnownDiagram
+    from kurbel.machine.shaft_side import KnownDiagram
 
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
