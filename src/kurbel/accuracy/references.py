@@ -14,7 +14,7 @@ from kurbel.accuracy.textbook import STEPS, TextbookCylinder
 from kurbel.arrays import Array
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.cylinder import crank_lag
-from kurbel.machine.turning import Swing
+from kurbel.machine.shaft_side import Swing
 
 NEEDED: dict[str, Callable[[Precise], Precise]] = {
     "A_i": lambda state: state.slope * state.P_gas,
