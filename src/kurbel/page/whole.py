@@ -43,7 +43,7 @@ from kurbel.report.keys import meaning, places_of
 from kurbel.solver.case import Case
 from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
 from kurbel.tables.frame import Frame, Subject, provenance
-from kurbel.tables.tables import Part, Report, for_people, grouped, stepped, together
+from kurbel.tables.tables import Part, Report, for_people, grouped, joined_names, stepped
 
 KeyTexts = Sequence[tuple[str, str]]
 """The keys of a machine file with their values, as they were read."""
@@ -236,7 +236,7 @@ def _energy(case: Case, system: str) -> Iterator[Grid]:
     for group in grouped(with_rows, itemgetter(1)):
         _, rows = group[0]
         yield Grid(
-            together([name for name, _ in group]), ("Per cycle", "Energy", "Unit"), rows, (1,)
+            joined_names([name for name, _ in group]), ("Per cycle", "Energy", "Unit"), rows, (1,)
         )
 
 
@@ -395,7 +395,7 @@ def _key_values(
         compared.append(((pair[0] or pair[1]).name, _compared(numbers, system, meanings)))
     for group in grouped(compared, itemgetter(1)):
         _, rows = group[0]
-        title = together([name for name, _ in group]) if len(pairs) > 1 else "Key values"
+        title = joined_names([name for name, _ in group]) if len(pairs) > 1 else "Key values"
         if rows:
             yield Grid(title, _heads(names), rows, (1, 2, 4))
 

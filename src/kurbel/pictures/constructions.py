@@ -50,7 +50,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
         return
 
     def tip(state: State) -> ComplexArray:
-        return state.along_rod * np.exp(1j * np.radians(state.phi))
+        return state.along_stroke * np.exp(1j * np.radians(state.phi))
 
     symbol = Words("P + F_f") if source.having("F_friction") else source.words("P")
     panel = source.locus(tip, "P", symbol)

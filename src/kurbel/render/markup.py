@@ -270,7 +270,7 @@ def document(report: Report, out: Writer) -> Iterator[str]:
     for text in report.head:
         yield out.paragraph.format(out.prose(text))
     yield from written(over_angle(report, out), out)
-    yield from written(of_places(report, out), out)
+    yield from written(place_tables_of(report, out), out)
     for note in notes_for_people(report):
         yield out.paragraph.format(out.prose(note))
     for part in report.all_parts:
@@ -304,7 +304,7 @@ def over_angle(report: Report, out: Writer) -> Iterator[TextTable]:
             yield from _parts_of(TextTable(name, [*heads, *columns], len(heads)), out)
 
 
-def of_places(report: Report, out: Writer) -> Iterator[TextTable]:
+def place_tables_of(report: Report, out: Writer) -> Iterator[TextTable]:
     """Yield the tables of places, in parts that are not too wide."""
     for printed_table in report.printed_tables:
         yield from _parts_of(place_table(printed_table, out.look), out)

@@ -20,7 +20,7 @@ from kurbel.pictures.picture import (
 )
 from kurbel.render import Look
 from kurbel.render.json_text import sha256_of
-from kurbel.render.markup import Html, html_page, listed, of_places, over_angle, written
+from kurbel.render.markup import Html, html_page, listed, over_angle, place_tables_of, written
 from kurbel.render.style import LONG_REPORT, MOVING, PAIRS, PICTURE, PICTURE_COLOURS, page_css
 from kurbel.render.svg import svg_rows
 from kurbel.render.text import DIGITS
@@ -111,7 +111,7 @@ def _item(item: SectionItem, out: Html) -> Iterator[str]:
             if part.key_values:
                 name = part_name(report, part, out.look) or "Key values"
                 yield from written([key_value_table(name, part.key_values, out.look)], out)
-        yield from written(of_places(report, out), out)
+        yield from written(place_tables_of(report, out), out)
         yield from (f"<p>{out.prose(note)}</p>\n" for note in notes_for_people(report))
     elif isinstance(item, OverAngle):
         yield f"<h3>{out.words(item.title)}</h3>\n"
