@@ -41,12 +41,15 @@ class Drawing(NamedTuple):
 
         return svg_file(self.pictures, Look())
 
-    def save(self, file_name: str) -> None:
-        """Draw to a file that ends in .svg, .png or .pdf. Raises UsageError where it cannot be written."""
+    def save(self, file_name: str, paper: str = "a4") -> None:
+        """Draw to a file that ends in .svg, .png or .pdf; paper: of a pdf, see `kurbel plot --paper`.
+
+        Raises UsageError where it cannot be written.
+        """
         from kurbel.render import Look
         from kurbel.render.drawing import draw_file
 
-        draw_file(self.pictures, Look(), file_name)
+        draw_file(self.pictures, Look(), file_name, paper)
 
 
 def draw(

@@ -20,7 +20,7 @@ from kurbel.report.commands import COMMANDS, subjects_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame, Subject, report_on
 from kurbel.tables.shown import PlaceRow, Places, too_large
-from kurbel.tables.tables import Report, grouped, together
+from kurbel.tables.tables import Report, grouped, joined_names
 
 _ROUNDING = 1e-9
 """Relative tolerance of a bound: a stroke of 110 mm does not break a limit of 110 mm through rounding."""
@@ -109,7 +109,7 @@ def _judged_figure(
     # equal ones are compared once
     is_within = True
     for equal in grouped(values, lambda owner_and_value: f"{owner_and_value[1]:.9g}"):
-        owners = together([owner for owner, _ in equal])
+        owners = joined_names([owner for owner, _ in equal])
         _, value = equal[0]
         verdict = _compared(path, quantity, bound, owners, value)
         is_within = is_within and verdict.severity == "info"

@@ -276,12 +276,12 @@ _NUMBERED = re.compile(r"(.*\D)(\d{1,9})$")
 Grouped = TypeVar("Grouped")
 
 
-def together(names: Sequence[str]) -> str:
+def joined_names(names: Sequence[str]) -> str:
     """Return several names as one text; names that differ only in a number are listed by their numbers.
 
-    >>> together(["cylinder 1", "cylinder 2", "cylinder 3", "cylinder 6"]), together(["HP", "LP"])
+    >>> joined_names(["cylinder 1", "cylinder 2", "cylinder 3", "cylinder 6"]), joined_names(["HP", "LP"])
     ('cylinders 1–3, 6', 'HP, LP')
-    >>> together(["pin of left 1", "pin of right 1", "pin of left 2", "pin of right 2"])
+    >>> joined_names(["pin of left 1", "pin of right 1", "pin of left 2", "pin of right 2"])
     'pin of left 1, 2, right 1, 2'
     """
     texts = []
@@ -356,7 +356,7 @@ def shown_once(report: Report) -> Report:
 
     parts = []
     for group in groups:
-        name = together([str(part.name) for part in group])
+        name = joined_names([str(part.name) for part in group])
         warnings = dict.fromkeys(chain.from_iterable(part.warnings for part in group))
         parts.append(group[0]._replace(name=name, warnings=tuple(warnings)))
     is_alone = len(parts) == 1 and report.whole is None
