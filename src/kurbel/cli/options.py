@@ -378,7 +378,7 @@ units_option = click.option(
     callback=_write_messages_in,
     is_eager=True,  # the other options have messages, too
     help="metric: mm, bar, kN, the default of tables and workbooks; technical: mm, kgf, at, as the old books; "
-    "imperial: in, lbf, psi, °F; si: the default of csv and json.",
+    "imperial: in, lbf, psi, deg F; si: the default of csv and json.",
 )
 
 
