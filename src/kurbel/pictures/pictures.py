@@ -112,7 +112,7 @@ def _reversals_of_stroke(
     source: Source,
     lines: Sequence[CurveFormula],
     reversals: Sequence[float],
-    breaks: Sequence[float],
+    breaks: Array,
 ) -> Iterator[Mark]:
     """Yield a mark J where the piston force reverses in a stroke: on the inertia line, else on zero."""
     start, end = breaks[0], breaks[-1]
@@ -124,14 +124,13 @@ def _reversals_of_stroke(
             yield Mark(float(state.x[0]), height, PageFigure(Words("J"), at_deg=angle))
 
 
-def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[list[float], str]]:
+def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[Array, str]]:
     """Yield the crank angles at which a stroke begins, bends, or has a point, and ends, and its name."""
     drive = source.results.drive
     cycle, (inner, outer) = drive.cycle, drive.mechanism.dead_centres()
     # twice, since a stroke may go over the end of the cycle
-    bends = list[float]()
-    for angle in (*source.results.breaks, *also):
-        bends += [angle, angle + cycle]
+    angles = np.concatenate((source.results.breaks, also))
+    bends = np.sort(np.concatenate((angles, angles + cycle)))
     ends = set[float]()
     for turn in range(0, int(cycle), 360):
         ends |= {(inner + turn) % cycle, (outer + turn) % cycle}
@@ -139,8 +138,8 @@ def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[list[
     for start, end in pairwise((*in_order, in_order[0] + cycle)):
         is_outward = math.cos(math.radians(start - inner)) > 1 - 1e-9
         name = "Outstroke" if is_outward else "Return stroke"
-        inside = [angle for angle in bends if start < angle < end]
-        yield [start, *inside, end], f"{name} {start:.4g}–{end:.4g}°"
+        inside = bends[(start < bends) & (bends < end)]
+        yield np.concatenate(([start], inside, [end])), f"{name} {start:.4g}–{end:.4g}°"
 
 
 def piston_force_of_crank(source: Source) -> Iterator[Panel]:
