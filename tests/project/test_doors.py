@@ -46,6 +46,7 @@ NEEDS = {
     "machine.several": {"cylinders", "firing_order", "cylinder"},
     "solver.given_torque": {"effort", "load"},
     "solver.ideal_process": {"steam", "compressor", "otto", "diesel"},
+    "solver.heat_release": {"heat"},
     "solver.indicated": {"trace"},
     "solver.shaft": {"crankshaft"},
     "solver.total_work": {"cylinders", "tandem"},

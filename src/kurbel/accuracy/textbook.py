@@ -309,10 +309,9 @@ class TextbookCylinder:
         back = since - 360 * turn > outer - inner
         share = self._share(within)
         stroke = 2 * turn + back
-        lines = [
-            [chamber.line_at(stroke, share) for chamber in piston.chambers]
-            for piston in self.pistons
-        ]
+        lines = []
+        for piston in self.pistons:
+            lines.append([chamber.line_at(stroke, share) for chamber in piston.chambers])
         return -1 if back and not self.motion.never_returns else 1, lines
 
     # forces

@@ -164,6 +164,15 @@ KINDS = {
         "psi/deg",
         "10 bar/deg",
     ),
+    "energy_rise": Kind(
+        0,
+        1e18,
+        "J, kJ, kgf m, lbf ft / deg, rad",
+        "J/deg",
+        ("J/deg", "kJ/deg"),
+        "kgf m/deg",
+        "lbf ft/deg",
+    ),
     "pressure_velocity": Kind(
         0,
         1e18,
@@ -325,7 +334,7 @@ _ZEROS = {"°C": 273.15, "°F": 459.67}
 _DEGREES: dict[str, UnitFactor] = {"rad": (180, math.pi)}
 _POUND_OF_FORCE: dict[str, UnitFactor] = {"lb": (_LBF, 1)}
 _ELSEWHERE: dict[str, dict[str, UnitFactor]] = {
-    **dict.fromkeys(("angle", "volume_rise"), _DEGREES),
+    **dict.fromkeys(("angle", "volume_rise", "energy_rise"), _DEGREES),
     # only a force gives a pressure or a torque: there the pound of everyday English can mean nothing else
     **dict.fromkeys(("pressure", "stress", "torque", "spring"), _POUND_OF_FORCE),
     "pressure_rise": {**_DEGREES, **_POUND_OF_FORCE},
@@ -557,7 +566,9 @@ def kinds() -> tuple[str, ...]:
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
     names = _names_of(kind)
-    return (*names, *ZEROED_UNITS) if kind == "pressure" else names
+    if kind != "pressure":
+        return names
+    return (*names, *ZEROED_UNITS)
 
 
 def listed_units(kind: str) -> tuple[str, ...]:

@@ -97,7 +97,9 @@ def find(
 def _as_list(texts: Sequence[str] | str) -> list[str]:
     """Return one text or several as a list; an empty text is none."""
     if isinstance(texts, str):
-        return [texts] if texts else []
+        if not texts:
+            return []
+        return [texts]
     return list(texts)
 
 

@@ -239,7 +239,8 @@ def summary_heads(heads: Sequence[Head]) -> tuple[tuple[str, str], ...]:
 
 def column_summaries(rows: Iterable[Design], heads: Sequence[Head]) -> Iterator[Design]:
     """Yield a row for every column of numbers, over the rows that have a value there."""
-    columns = [_numbers_of(cells) for cells in zip(*(row.values for row in rows))]
+    values_by_row = [row.values for row in rows]
+    columns = [_numbers_of(cells) for cells in zip(*values_by_row)]
     inputs = [numbers for numbers, head in zip(columns, heads) if head.input]
     for numbers, head in zip(columns, heads):
         finite = numbers[np.isfinite(numbers)]

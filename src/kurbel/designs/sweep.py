@@ -123,14 +123,6 @@ class Sweep:
             shown.append((name, column))
         return shown
 
-    def types(self) -> list[str]:
-        """Return the type of each column: `number`, `list`, or `text`, also where words occur among numbers."""
-        types = ["list" if head.listed else "number" for head in self.heads]
-        for index, numbers in enumerate(self._numbers):
-            if not np.isfinite(numbers).all():
-                types[index] = "text"
-        return types
-
     def blocks(self, rows: range) -> Iterator[range]:
         """Yield the blocks of rows, counted from 0, that have any of these rows.
 

@@ -330,7 +330,9 @@ def with_article(kind: str) -> str:
     >>> with_article("oscillating-cylinder")
     'an oscillating-cylinder'
     """
-    return f"an {kind}" if kind[0] in "aeiou" else f"a {kind}"
+    if kind[0] in "aeiou":
+        return f"an {kind}"
+    return f"a {kind}"
 
 
 def _of_output(cylinder: Cylinder) -> Iterator[Rule]:

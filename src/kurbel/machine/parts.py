@@ -389,7 +389,9 @@ class RodPoint(Record):
 
     def from_crank_pin(self, mechanism: Mechanism) -> float:
         """Return the distance along the rod in m from the crank pin toward the other one."""
-        return self.along if self.origin == "crank_pin" else mechanism.coupler_length - self.along
+        if self.origin == "crank_pin":
+            return self.along
+        return mechanism.coupler_length - self.along
 
     def rules_on(self, mechanism: Mechanism) -> Iterator[Rule]:
         """Yield what keeps the point from being one of this mechanism."""

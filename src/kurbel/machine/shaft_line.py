@@ -135,13 +135,15 @@ class ShaftPart(Record):
 
     word: str = ""
 
+    def _given_keys(self) -> list[tuple[str, str]]:
+        """Return the keys that are given, each with the kind of item to which it belongs."""
+        given = []
+        for kind, keys in _KEYS.items():
+            given += [(kind, key) for key in keys if vars(self)[key] is not None]
+        return given
+
     def rules(self) -> Iterator[Rule]:
-        given = [
-            (kind, key)
-            for kind, keys in _KEYS.items()
-            for key in keys
-            if vars(self)[key] is not None
-        ]
+        given = self._given_keys()
         piece = "'stiffness', or 'diameter' and 'length', of a shaft segment"
         nothing = f"give 'inertia' or 'cylinder' of a mass, {piece}, 'gear', or 'branch'"
         yield Rule((), not given and not self.word, nothing)
@@ -174,10 +176,12 @@ class ShaftPart(Record):
 
         A mass, too, is the flywheel of the machine.
         """
-        given = [
-            kind for kind, keys in _KEYS.items() if any(vars(self)[key] is not None for key in keys)
-        ]
-        return GROUND if self.word == GROUND else (*given, "mass")[0]
+        if self.word == GROUND:
+            return GROUND
+        given = self._given_keys()
+        if not given:
+            return "mass"
+        return given[0][0]
 
     @property
     def has_inertia(self) -> bool:

@@ -172,7 +172,9 @@ def _without_zeros(tree: Node, reading: Reading, path: Path = (), reference: str
             _without_zeros(node, reading, (*path, index), reference)
             for index, node in enumerate(tree)
         ]
-    return _without_zero(tree, reading, path, reference) if isinstance(tree, str) else tree
+    if not isinstance(tree, str):
+        return tree
+    return _without_zero(tree, reading, path, reference)
 
 
 def _zeros(tree: Node, key: str = "") -> Iterator[str]:

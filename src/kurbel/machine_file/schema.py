@@ -143,7 +143,9 @@ def _of_number(form: NumberForm, definitions: Schema) -> Schema:
     others: list[object] = [*form.words]
     if form.zero:
         others.append(0)
-    return {"anyOf": [number, {"enum": others}]} if others else number
+    if not others:
+        return number
+    return {"anyOf": [number, {"enum": others}]}
 
 
 def _unit_pattern(kind: str) -> str:
@@ -257,7 +259,9 @@ def _describe_variant(
 def _demands(form: RecordForm) -> Schema:
     """Return the schema of the keys that must be given."""
     names = required(form.keys)
-    return {"required": names} if names else {}
+    if not names:
+        return {}
+    return {"required": names}
 
 
 def _none_of(groups: list[list[str]]) -> Schema:

@@ -51,7 +51,9 @@ class Offer:
         factors = [self.factor(state.mechanism, state.posed), *[state.omega] * self.omega]
         if self.force:
             factors.append(self.force(state))
-        return None if any(factor is None for factor in factors) else math.prod(factors)
+        if any(factor is None for factor in factors):
+            return None
+        return math.prod(factors)
 
 
 def motion_column(

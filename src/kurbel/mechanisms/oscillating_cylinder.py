@@ -104,7 +104,9 @@ class OscillatingCylinder(Mechanism):
         before = displacement * (reach + self._gap)
         after = (self.stroke - displacement) * (reach + self.trunnion + self.crank)
         degrees = np.degrees(2 * np.arctan2(np.sqrt(before), np.sqrt(after)))
-        return degrees if outstroke else 360.0 - degrees
+        if outstroke:
+            return degrees
+        return 360.0 - degrees
 
     # the cylinder
 

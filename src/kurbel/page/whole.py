@@ -288,7 +288,9 @@ def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Ite
     yield from _pairs(cases, "", names, system)
 
     # the same facts of both, in the order of the first
-    ids = dict.fromkeys(id for case in cases for id in facts_of(case))
+    ids = dict[str, None]()
+    for case in cases:
+        ids |= dict.fromkeys(facts_of(case))
     titles: dict[Quantity, str] = {}
     numbers = []
     for case in cases:
@@ -375,4 +377,6 @@ def _difference(first: float | None, second: float | None) -> str:
     percent = 100 * (second - first) / abs(first)
     if not percent:
         return "0 %"
-    return f"{percent:+.2f} %" if abs(percent) < 100 else f"{percent:+.0f} %"
+    if abs(percent) < 100:
+        return f"{percent:+.2f} %"
+    return f"{percent:+.0f} %"

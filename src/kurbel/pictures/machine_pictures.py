@@ -200,6 +200,10 @@ def torque_orders(source: Source) -> Iterator[Panel]:
         yield _bars(orders, parts, name, "torque", "left: gas, weight, friction; right: inertia")
 
 
+def _has_bars(panel: Panel) -> bool:
+    return any(shade.high.any() for shade in panel.shades)
+
+
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
     """Radii of the circles on which unbalanced force and moment turn, order by order, with the shaft and against it."""
     omega = source.results.omega
@@ -216,7 +220,7 @@ def unbalanced_orders(source: Source) -> Iterator[Panel]:
         panels.append(_bars(free.orders, radii, Words(name, words="radius"), kind, title))
 
     # what is balanced has nothing to show, unless all is
-    with_bars = [panel for panel in panels if any(shade.high.any() for shade in panel.shades)]
+    with_bars = [panel for panel in panels if _has_bars(panel)]
     yield from with_bars or panels[:1]
 
 
@@ -407,4 +411,6 @@ def _slenderness(panel: Panel) -> float:
     width = float(np.nanmax(locus.x) - np.nanmin(locus.x))
     height = float(np.nanmax(locus.y) - np.nanmin(locus.y))
     short, long = sorted((width, height))
-    return long / short if short else math.inf
+    if short:
+        return long / short
+    return math.inf

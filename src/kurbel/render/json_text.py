@@ -84,7 +84,9 @@ def _made_from(provenance: Provenance | None) -> dict[str, object]:
 
 def sha256_of(file: InputFile) -> str | None:
     """Return the SHA-256 of a file that was read, None if it is gone."""
-    return None if file.content is None else sha256(file.content).hexdigest()
+    if file.content is None:
+        return None
+    return sha256(file.content).hexdigest()
 
 
 def _named(part: Part, ratio: bool, look: Look) -> Content:

@@ -90,7 +90,9 @@ def terminal_size(fallback: tuple[int, int] = (80, 24)) -> tuple[int, int]:
 def _number_of(variable: str) -> int:
     """Return the number that a variable of the environment has, 0 without one."""
     text = os.environ.get(variable, "")
-    return int(text) if text.isdecimal() else 0
+    if not text.isdecimal():
+        return 0
+    return int(text)
 
 
 def _stdout() -> TextIO:

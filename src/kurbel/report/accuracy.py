@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
@@ -58,7 +59,8 @@ def accuracy_report(
         part, shown = _part_of(scene, machine is not None, quick)
         parts.append(part)
         sentences += shown
-    has_speed = any(table.id == SPEED for part in parts for table in part.place_tables)
+    tables = chain.from_iterable(part.place_tables for part in parts)
+    has_speed = any(table.id == SPEED for table in tables)
     return Report(
         f"{machine.name if machine else 'built-in scenes'}. Accuracy and run time",
         "accuracy",

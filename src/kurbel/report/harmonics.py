@@ -97,7 +97,9 @@ def requested_orders(machine: Machine, requested: Sequence[float] | None) -> Arr
             listed = usual.get(turns, f"1/{turns}, 2/{turns}, 3/{turns}, …")
             cycle = f"the cycle repeats after {360 * turns} degrees"
             raise UsageError(f"--orders {order:g}: {cycle} and has the orders {listed}")
-    return None if requested is None else np.unique(requested)
+    if requested is None:
+        return None
+    return np.unique(requested)
 
 
 def _harmonics_notes(harmonics: MachineOrders) -> Iterator[str]:

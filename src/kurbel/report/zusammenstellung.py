@@ -129,7 +129,9 @@ def zusammenstellung(
     has_motion = "acceleration_factor" in ids or "velocity_factor" in ids
     whole = Part("", (), place_tables=(_roots(ratios),)) if has_motion else None
     report = Report(title, "table", None, "ratios", parts, whole, mirrored)
-    return _with_printed(report, formula) if compare else report
+    if not compare:
+        return report
+    return _with_printed(report, formula)
 
 
 def _ids_of(rows: Iterable[str]) -> list[str]:
@@ -276,7 +278,9 @@ def _with_printed(report: Report, formula: str) -> Report:
     All factors have the three decimals of the book. Raises UsageError if the book prints no such table.
     """
     printed = _printed()
-    wanted = {(column.id, part.name) for part in report.parts for column in part.columns[1:]}
+    wanted = set[tuple[str, str | float | None]]()
+    for part in report.parts:
+        wanted.update((column.id, part.name) for column in part.columns[1:])
     has_book_angles = [*report.parts[0].columns[0].values] == [*range(0, 181, 10)]
     if wanted - {*printed} or formula != "book" or not has_book_angles:
         only = "only b and c by --formula book, for L/R = 5, 4.5 and 4, every 10 degrees"

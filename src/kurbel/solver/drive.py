@@ -228,7 +228,9 @@ class Drive:
     def centrifugal(self, mass: Number) -> Number:
         """Return the centrifugal force m R ω² in N of a mass in kg at the crank pin; 0 where no speed is given."""
         # a float squared by ** raises where the product is infinite
-        return 0.0 if self.omega is None else mass * self.mechanism.crank * self.omega * self.omega
+        if self.omega is None:
+            return 0.0
+        return mass * self.mechanism.crank * self.omega * self.omega
 
     def weight_of(self, mass: Number) -> tuple[Number, Number]:
         """Return the weight in N of a mass in kg along the stroke line and on the guide; 0 where it is left out."""
@@ -328,7 +330,9 @@ def _or_none_at_all(coefficient: Number | None) -> Number:
 
 def _moment_arm(f: Number | None, diameter: Number | None) -> Number:
     """Return f d/2 in m, the moment of friction over the load; 0 where one of both is not given."""
-    return 0.0 if f is None or diameter is None else f * diameter / 2
+    if f is None or diameter is None:
+        return 0.0
+    return f * diameter / 2
 
 
 def any_of(conditions: Iterable[Truth]) -> Truth:

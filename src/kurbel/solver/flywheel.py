@@ -113,7 +113,9 @@ class TurningState(AtAngles):
 
     def __getitem__(self, id: str) -> Array | None:
         """Return a column by its id, or the load `M_load` in N m at the nominal speed; None for another name."""
-        return self.course(id) if id == "M_load" else super().__getitem__(id)
+        if id == "M_load":
+            return self.course(id)
+        return super().__getitem__(id)
 
     def course(self, id: str) -> Array | None:
         """Return a quantity of `MachineTurning.samples_of` at the angles, (n,); None for what is left out."""
@@ -174,17 +176,25 @@ class MachineTurning(Results):
             case "M_load":
                 return effort.pieces, effort.load
             case "omega":
-                return None if self.speed is None else self.speed.omega
+                if self.speed is None:
+                    return None
+                return self.speed.omega
             case "alpha":
-                return None if self.speed is None else self.speed.alpha
+                if self.speed is None:
+                    return None
+                return self.speed.alpha
             case "M_coupling":
-                return None if self.coupled is None else self.coupled.torque
+                if self.coupled is None:
+                    return None
+                return self.coupled.torque
         return self._from_others(column)
 
     def _at_crank(self, torque: Array) -> tuple[Pieces, Array] | None:
         """Return the force of a torque at the radius of crank 1; None without a crank."""
         pieces = self.effort.pieces
-        return None if self.crank is None else (pieces, torque / pieces.of(self.crank))
+        if self.crank is None:
+            return None
+        return (pieces, torque / pieces.of(self.crank))
 
     def _from_others(self, column: str) -> tuple[Pieces, Array] | None:
         """Return a column that is computed from other columns, on pieces halved until it is a polynomial."""
@@ -212,7 +222,9 @@ class MachineTurning(Results):
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         samples = self.samples_of(column)
-        return None if samples is None else where_is(*samples, value)
+        if samples is None:
+            return None
+        return where_is(*samples, value)
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
@@ -345,7 +357,9 @@ class MachineTurning(Results):
     @cached_property
     def summits(self) -> Extremes | None:
         """Largest and smallest excess work with their angles; None where the only machine has none."""
-        return self.excess.summits.each(self.effort.result)[0] if self.excess.torque.any() else None
+        if not self.excess.torque.any():
+            return None
+        return self.excess.summits.each(self.effort.result)[0]
 
     # flywheel
 
@@ -456,7 +470,9 @@ class MachineTurning(Results):
         if self.law is None or not self.speed:
             return None
         multiplier = np.exp(np.minimum(self.speed.growth, _LARGEST_EXPONENT))
-        return float(multiplier) if self.effort.count is None else multiplier
+        if self.effort.count is not None:
+            return multiplier
+        return float(multiplier)
 
     @property
     def load_ignored(self) -> bool:
@@ -592,7 +608,9 @@ class MachineTurning(Results):
         """
         if self.machine.coupling is None or self.rigid:
             return None
-        return self.speed if isinstance(self.speed, _elastic_coupling()) else None
+        if not isinstance(self.speed, _elastic_coupling()):
+            return None
+        return self.speed
 
     # the required δ, compared with the speed line
 

@@ -37,6 +37,7 @@ from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
 
 if TYPE_CHECKING:
+    from kurbel.solver.heat_release import HeatRelease
     from kurbel.solver.indicated import Indicated
     from kurbel.solver.valve import ValveGear
 
@@ -45,6 +46,12 @@ def _indicated() -> type[Indicated]:
     from kurbel.solver.indicated import Indicated
 
     return Indicated
+
+
+def _heat_release() -> type[HeatRelease]:
+    from kurbel.solver.heat_release import HeatRelease
+
+    return HeatRelease
 
 
 def _valve_gear() -> type[ValveGear]:
@@ -165,7 +172,9 @@ class CylinderForces(SampledCylinder, Results):
     def valve_gear(self) -> ValveGear | None:
         """What the valve does."""
         cylinder = self.drive.cylinder
-        return _valve_gear()(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
+        if not cylinder.valve:
+            return None
+        return _valve_gear()(cylinder.valve, cylinder, self.motion)
 
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")
@@ -264,6 +273,15 @@ class CylinderForces(SampledCylinder, Results):
         """Key values of the traces of the cylinder's own piston."""
         gas = self.drive.own_gas
         return _indicated()(gas) if gas and gas.has_trace else None
+
+    @part(
+        _heat_release,
+        there=lambda forces: bool(forces.drive.own_gas and forces.drive.own_gas.releases_heat),
+    )
+    def heat_release(self) -> HeatRelease | None:
+        """Key values of the heat release over the cylinder's own piston."""
+        gas = self.drive.own_gas
+        return _heat_release()(gas) if gas and gas.releases_heat else None
 
     @part(Brake)
     def brake(self) -> Brake | None:
@@ -407,7 +425,9 @@ class CylinderForces(SampledCylinder, Results):
             values = self.sampled(name)
             if values is not None:
                 loads[name] = values
-        return RodLoads(self.drive, self.pieces, loads) if loads else None
+        if not loads:
+            return None
+        return RodLoads(self.drive, self.pieces, loads)
 
     @shared
     def answers(self) -> dict[str, object]:
@@ -681,4 +701,6 @@ def _rows(
         rows = rows.changed(Quantity.of_ram)
     elif absolute:
         rows = rows.changed(Quantity.absolute)
-    return rows if guided else rows.changed(Quantity.without_guide)
+    if guided:
+        return rows
+    return rows.changed(Quantity.without_guide)

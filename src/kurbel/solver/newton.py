@@ -139,7 +139,9 @@ def _energy(rod: _Rod, state: State, motion: _Motion) -> float:
     centre = motion.crosshead_speed * (1 - rod.centre) + motion.pin_speed * rod.centre
     J = J + rod.mass * np.abs(centre) ** 2 + rod.inertia * motion.turn**2
     size = float(np.max(J))
-    return float(np.abs(J - reduced_inertia(state)).max()) / size if size else 0.0
+    if not size:
+        return 0.0
+    return float(np.abs(J - reduced_inertia(state)).max()) / size
 
 
 def _of_rod(

@@ -297,7 +297,9 @@ class State(Chambers):
             block, _ = self.drive.yoke_friction
             return np.abs(self.along_rod) * self._forward * block
         rubbing = self.rubbing
-        return 0.0 if rubbing is None else self._side(rubbing.at_crank + rubbing.at_crosshead)
+        if rubbing is None:
+            return 0.0
+        return self._side(rubbing.at_crank + rubbing.at_crosshead)
 
     @cached_property
     def _rod_side(self) -> Number:
@@ -389,7 +391,9 @@ class State(Chambers):
     @cached_property
     def _links_side(self) -> Number:
         """Side force ΣM_K/(L cos ψ) in N that the link rods take from the guide of a master; 0 without them."""
-        return self._side(self._moment_of_links) if self.drive.links else 0.0
+        if not self.drive.links:
+            return 0.0
+        return self._side(self._moment_of_links)
 
     @property
     def moment_on_master(self) -> Any:
@@ -398,7 +402,9 @@ class State(Chambers):
             return None
         if self.drive.cylinder.link_rod is not None:
             return self.knuckle_moment
-        return self._moment_of_links if self.drive.links else None
+        if not self.drive.links:
+            return None
+        return self._moment_of_links
 
     @cached_property
     def _moment_of_links(self) -> Number:
@@ -437,7 +443,9 @@ class State(Chambers):
     def after_steady_friction(self) -> Number:
         """Piston force P in N less the steady friction; acts on the crosshead."""
         steady = self.steady_friction
-        return self.P - self.direction * steady if some(steady != 0) else self.P
+        if some(steady != 0):
+            return self.P - self.direction * steady
+        return self.P
 
     @cached_property
     def guide_sense(self) -> Number:
@@ -577,7 +585,9 @@ class State(Chambers):
     @property
     def _output(self) -> Any:
         """Force in N (moment in N m) at the output, less friction, from which virtual work gives T and M."""
-        return self.along_rod if self.mechanism.slides else self.M_out
+        if self.mechanism.slides:
+            return self.along_rod
+        return self.M_out
 
     @cached_property
     def _rod_tangential(self) -> Number:
@@ -617,7 +627,9 @@ class State(Chambers):
 
         It lacks the moments of friction in pin and journals, which T includes.
         """
-        return self.tangential_at_pin if self.drive.pin_friction else None
+        if not self.drive.pin_friction:
+            return None
+        return self.tangential_at_pin
 
     @cached_property
     def tangential_at_pin(self) -> Any:
@@ -720,4 +732,6 @@ def _sum(first: Any, second: Any) -> Any:
     """Return the sum of two forces, of which each may be None."""
     if first is None:
         return second
-    return first if second is None else first + second
+    if second is None:
+        return first
+    return first + second

@@ -128,7 +128,9 @@ class TotalWork(Results):
             lost = cylinder.friction_work
             if lost is not None:
                 works.append(lost * (self.machine.revolutions / cylinder.drive.revolutions))
-        return total(*works) if works else None
+        if not works:
+            return None
+        return total(*works)
 
     def per_second(self, work: Any) -> Any:
         """Return the power in W of a work in J per cycle of the machine; None without a speed, and at rest."""

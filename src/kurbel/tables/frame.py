@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -80,7 +81,9 @@ class Subject(NamedTuple):
         if self.results:
             return self.results.lists
         # columns alone are those of a shaft segment
-        return every_quantity() if self.at else Lists((), ())
+        if self.at:
+            return every_quantity()
+        return Lists((), ())
 
     def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""
@@ -201,7 +204,8 @@ def report_on(
         return _report_on_names(frame, machine, title, subjects)
 
     with_rows = _with_rows(frame, subjects)
-    ids = {column.id for rows in with_rows for column in rows.columns}
+    columns = chain.from_iterable(rows.columns for rows in with_rows)
+    ids = {column.id for column in columns}
     _check_columns(frame, with_rows, ids)
 
     # a CSV table has key values only where it has nothing else
@@ -284,7 +288,7 @@ def _report_on_names(
     have.
     """
     # pistons of a rod are meant by their names alone
-    pistons = [piston for subject in subjects for piston in subject.pistons]
+    pistons = list(chain.from_iterable(subject.pistons for subject in subjects))
     choices = choices_in(frame.names, frame.command, [*subjects, *pistons])
     scopes = {choice.scope for choice in choices}
     named_pistons = [piston for piston in pistons if piston.name in scopes]
@@ -507,9 +511,9 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     key_values = called(name, every_quantity().key_values(command).values())
     if key_values:
         return f"'{name}' is a key value and no column; --key-values {key_values[0]} prints it"
-    words = [
-        word for column in (*present, *declared.values()) for word in (column.id, column.symbol)
-    ]
+    words = list[str]()
+    for column in (*present, *declared.values()):
+        words += (column.id, column.symbol)
     near = in_sentences(name, present) or did_you_mean(name, tuple(words))
     return (
         f"'{text_in_one_line(name)}' is no column of kurbel {command}{near} "

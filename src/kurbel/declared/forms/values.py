@@ -113,7 +113,9 @@ def one_line(value: Node, expected: str) -> str:
         refused(f"expected {expected}, got {len(value)} characters; {LONGEST_VALUE} are the most")
     if not isinstance(value, str) or not value.isprintable():
         refused(f"expected {expected}, got {node_kind(value)}")
-    return value if value.strip() else refused(f"expected {expected}, got an empty text")
+    if value.strip():
+        return value
+    return refused(f"expected {expected}, got an empty text")
 
 
 def _beyond(value: Number, kind: str) -> tuple[tuple[Truth, str], ...]:
@@ -243,7 +245,9 @@ class NumberForm(Form):
         broken_bound = self.out_of_bounds(number) or out_of_size(number, self.kind)
         if broken_bound:
             refused(f"{text} {broken_bound}")
-        return self.becomes(number, text) if self.becomes else number
+        if not self.becomes:
+            return number
+        return self.becomes(number, text)
 
     def _number(self, text: str) -> float:
         """Return the number in the base of its kind; raises RuleError."""
@@ -554,7 +558,9 @@ class Points(Form):
                 f'expected a number, got the text "{text_in_one_line(text)}"; '
                 "leave out the quotation marks"
             )
-        return parse_ratio(text) if self.ratio and index == 0 else parse_number(text)
+        if self.ratio and index == 0:
+            return parse_ratio(text)
+        return parse_number(text)
 
     def _miscounted(self, texts: list[str]) -> NoReturn:
         """Raise RuleError for a point of too many or too few numbers."""

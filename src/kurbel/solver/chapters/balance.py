@@ -99,7 +99,9 @@ def orders_of(throw: CylinderThrow, book: bool, count: int) -> ComplexArray:
 def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
     """Return d²x/dφ² in m of first order, R 291; the true one where there is no rod, None where the book has none."""
     offer = next((offer for offer in mechanism.OFFERS if offer.quantity.id == "b_book"), None)
-    return offer.factor(mechanism, angle) if offer else mechanism.curvature(angle)
+    if offer:
+        return offer.factor(mechanism, angle)
+    return mechanism.curvature(angle)
 
 
 class Contribution(NamedTuple):
@@ -232,7 +234,9 @@ def _vector(
 
     def part(columns: BalanceColumns) -> Array | None:
         vector = columns.vector(name)
-        return None if vector is None else of(vector)
+        if vector is None:
+            return None
+        return of(vector)
 
     return value(symbol, kind, text, part, on_request=("balance",) if asked else ())
 
@@ -499,7 +503,9 @@ class MachineBalance(Results):
     @cached_property
     def free(self) -> Unbalanced:
         """The unbalance with the counterweights and balance shafts of the machine file."""
-        return self._with(self._weights) if self._weights else self.bare
+        if self._weights:
+            return self._with(self._weights)
+        return self.bare
 
     @cached_property
     def book(self) -> Unbalanced | None:
@@ -514,7 +520,9 @@ class MachineBalance(Results):
         vectors = self.book if name.startswith("book") else self.free
         if vectors is None:
             return None
-        return vectors.force if name.endswith("force") else vectors.moment
+        if name.endswith("force"):
+            return vectors.force
+        return vectors.moment
 
     def times_omega_squared(self, lengths: Array, degrees: Array) -> Extreme | None:
         """Return the extreme of a vector from its largest magnitude over ω²; None without a speed."""
@@ -533,7 +541,9 @@ class MachineBalance(Results):
 
     def largest_of_book(self, name: str) -> Extreme | None:
         """Return the largest magnitude of a vector by the acceleration of first order, where these are compared."""
-        return self.largest(name) if self._compare else None
+        if not self._compare:
+            return None
+        return self.largest(name)
 
     # the rolling moment on the frame about the shaft: −(M + dH/dt), H the angular momentum about the shaft
 
@@ -557,7 +567,9 @@ class MachineBalance(Results):
             moment = state.b * (drive.mass * drive.mechanism.offset)
             if drive.cylinder.link_rod is not None:
                 moment = moment + state.knuckle_momentum_rate
-            return moment - state.rod_couple if drive.rod else moment
+            if not drive.rod:
+                return moment
+            return moment - state.rod_couple
 
         if self.effort is None:
             return None
@@ -579,7 +591,9 @@ class MachineBalance(Results):
     def cycle(self) -> float:
         """Period in degrees: one revolution, or the cycle of the machine where gas forces are in the rolling moment."""
         has_gas = any(cylinder.drive.has_gas for cylinder in self._cylinders)
-        return 360.0 * self.machine.revolutions if has_gas else 360.0
+        if not has_gas:
+            return 360.0
+        return 360.0 * self.machine.revolutions
 
     @property
     def breaks(self) -> Array:

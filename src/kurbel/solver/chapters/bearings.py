@@ -247,14 +247,18 @@ class Bearing(Results):
         if self.count is None and self.omega == 0:
             return "not defined at rest"
         missing = [name for name, size in zip(("diameter", "length"), self.size) if size is None]
-        return f"no {' and '.join(missing)} given" if missing else ""
+        if not missing:
+            return ""
+        return f"no {' and '.join(missing)} given"
 
     @property
     def film_obstacle(self) -> str:
         """Why the only machine has no film in a bearing that `oil_film` describes, or an empty text."""
         if self.oil is None:
             return ""
-        return self.film.obstacle if self.film else self._film_lacks
+        if self.film:
+            return self.film.obstacle
+        return self._film_lacks
 
     @cached_property
     def _cycle(self) -> tuple[Pieces, Array, ComplexArray]:

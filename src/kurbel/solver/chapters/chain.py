@@ -21,6 +21,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -117,7 +118,8 @@ class Chain:
     @cached_property
     def has_branches(self) -> bool:
         """Whether more than two segments begin or end at a mass."""
-        ends = Counter(mass for join in self.joins for mass in join if mass != GROUNDED)
+        ends = Counter(chain.from_iterable(self.joins))
+        del ends[GROUNDED]
         return max(ends.values(), default=0) > 2
 
     @property
@@ -406,7 +408,7 @@ class _Quotients:
         tree, bars = self._tree, self._bars
         linked = [mass for mass, link in enumerate(tree.links) if link is not None]
         segments = [link.segment for link in tree.links if link is not None]
-        fixed = [segment for segments in tree.fixed for segment in segments]
+        fixed = list(chain.from_iterable(tree.fixed))
         return bars.nodes(segments, self.ratios[linked]) + bars.nodes_from_ground(fixed)
 
 
@@ -525,7 +527,9 @@ class Modes:
             is_found = ~is_outside & (np.nextafter(low, high) == high)
             frequencies[left[is_found]] = high[is_found]
             left, low, high, margin = (row[~is_found] for row in (left, low, high, margin))
-        return frequencies if self.chain.is_held else np.append(0.0, frequencies)
+        if self.chain.is_held:
+            return frequencies
+        return np.append(0.0, frequencies)
 
     def _guessed(self) -> Array:
         """Return the elastic natural frequencies about, singular values of K^½ J^{−½}, inertias lumped."""

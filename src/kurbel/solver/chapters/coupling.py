@@ -109,7 +109,9 @@ class StiffCoupling(CouplingTorque):
         pieces, _ = self.torque
         highest, lowest = self.torque_extremes
         still = self._line.effort.count is None and highest.value == lowest.value
-        return None if still else self.result(np.ones(pieces.count))
+        if still:
+            return None
+        return self.result(np.ones(pieces.count))
 
 
 class ElasticCoupling(SpeedLine, CouplingTorque):

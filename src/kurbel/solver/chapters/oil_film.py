@@ -90,7 +90,9 @@ class FilmShape(NamedTuple):
     @property
     def finite(self) -> Any:
         """Λ, by which a film of this length differs from a short one."""
-        return 0.0 * self.lam if self.is_short else self.lam**2 / (1 + self.lam / 4)
+        if self.is_short:
+            return 0.0 * self.lam
+        return self.lam**2 / (1 + self.lam / 4)
 
     def mobility_number(self, omega: Any) -> Any:
         """Return K in 1/N at an angular velocity in rad/s."""

@@ -248,7 +248,9 @@ class ThrowStrength(Strength):
 
     def _position(self, forces: CylinderForces) -> Number:
         """Return the degrees by which a cylinder follows cylinder 1."""
-        return 0.0 if self._is_alone else position(forces)
+        if self._is_alone:
+            return 0.0
+        return position(forces)
 
     # the throw under its loads
 
@@ -282,7 +284,9 @@ class ThrowStrength(Strength):
         """Return the angle of the crank of the first cylinder on the pin at angles of crank 1."""
         later = self._position(self.rods[0])
         if not np.any(later):
-            return CrankAngle.of(degrees) if pieces is None else CrankAngle.at_nodes(pieces)
+            if pieces is None:
+                return CrankAngle.of(degrees)
+            return CrankAngle.at_nodes(pieces)
         # whole turns are taken off, which is exact: next to a large position an angle would lose its digits
         later = np.fmod(later, 360.0)
         return CrankAngle.of(degrees - (later if pieces is None else pieces.of(later)))
@@ -663,7 +667,9 @@ class CrankshaftStrength(Strength):
     @property
     def only(self) -> ThrowStrength | None:
         """The throw, if there is one alone."""
-        return self.throws[0] if len(self.throws) == 1 else None
+        if len(self.throws) != 1:
+            return None
+        return self.throws[0]
 
     @property
     def worst(self) -> ThrowStrength:

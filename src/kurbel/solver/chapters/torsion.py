@@ -320,7 +320,9 @@ class SegmentTorque(NamedTuple):
 
     def stress_of(self, torque: Any) -> Any:
         """Return the stress in Pa of torques in N m, None if not known."""
-        return None if self.factor is None else self.factor * torque
+        if self.factor is None:
+            return None
+        return self.factor * torque
 
     @property
     def tau_mean(self) -> float | None:
@@ -526,11 +528,9 @@ class ShaftVibration(Results):
         critical, working = list[Critical](), self.machine.speed
         for mode in range(1, min(modes, self.last) + 1):
             angles, omega = self.holzer(mode).angles, float(self.modes.omegas[mode - self.first])
-            at_cranks = {
-                name: float(angles[i])
-                for i, mass in enumerate(self.line.masses)
-                for name in mass.cylinders
-            }
+            at_cranks = dict[str, float]()
+            for mass, angle in zip(self.line.masses, angles.tolist()):
+                at_cranks |= dict.fromkeys(mass.cylinders, angle)
             cranks = [
                 (at_cranks[cylinder.name], crank_lag(cylinder, self.machine.cylinders[0]))
                 for cylinder in self.machine.cylinders
@@ -570,11 +570,9 @@ class ShaftVibration(Results):
     @cached_property
     def vibration(self) -> Vibration | None:
         """The forced vibration at the working speed; None where none can be computed."""
-        return (
-            None
-            if self.obstacle or self.machine.speed is None
-            else self.forced([self.machine.speed])
-        )
+        if self.obstacle or self.machine.speed is None:
+            return None
+        return self.forced([self.machine.speed])
 
     @cached_property
     def steady(self) -> SteadyMotion | None:
@@ -623,7 +621,9 @@ class ShaftVibration(Results):
         """The mean power in W dissipated at the working speed by all orders, or by those requested."""
         if self.steady:
             return self.steady.loss
-        return float(self._summed.loss[0]) if self._summed else None
+        if not self._summed:
+            return None
+        return float(self._summed.loss[0])
 
     @cached_property
     def _summed(self) -> Vibration | None:
@@ -640,7 +640,9 @@ class ShaftVibration(Results):
     @property
     def summed(self) -> Array | None:
         """The orders that are summed at the working speed, (n,); None where all are in it."""
-        return self._summed.acting.orders if self._summed else None
+        if not self._summed:
+            return None
+        return self._summed.acting.orders
 
     @property
     def remainder(self) -> float | None:
