@@ -76,7 +76,7 @@ def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:
     middles = (breaks[:-1] + breaks[1:]) / 2
     shown = np.arange(len(breaks))
     if len(breaks) > _CROWDED:
-        shown = _telling(breaks, values(breaks[:-1], middles))
+        shown = _shown_breaks(breaks, values(breaks[:-1], middles))
         breaks = breaks[shown]
     # angles just after the beginning and just before the end of each piece
     after = middles[shown[:-1]]
@@ -122,29 +122,37 @@ def _in_order(angles: Array) -> Array:
     return ascending[np.diff(ascending, prepend=-np.inf) > 0]
 
 
-def _telling(breaks: Array, points: Array) -> Indices:
+def _shown_breaks(breaks: Array, points: Array) -> Indices:
     """Return which of a crowd of breaks (m,) a picture needs: the others are between points that it shows.
 
-    points: quantities (k, m - 1) just after each but the last. Of every stretch the first break, and those with the
-    lowest and highest points; beside them what is as wide as a stretch.
+    points: quantities (k, m - 1) just after each but the last.
     """
-    # stretches of equally many breaks, the last one filled up with its last point
+    is_shown = np.zeros(len(breaks), dtype=bool)
+    is_shown[telling(points, _STRETCHES)] = True
+    is_shown[-1] = True
+    # what is as wide as a stretch has both its ends
+    is_wide = np.diff(breaks) > (breaks[-1] - breaks[0]) / _STRETCHES
+    is_shown[:-1] |= is_wide
+    is_shown[1:] |= is_wide
+    return np.flatnonzero(is_shown)
+
+
+def telling(points: Array, stretches: int) -> Indices:
+    """Return which of very many points (k, m) in order a picture needs: first, lowest and highest of each stretch."""
+    # stretches of equally many points, the last one filled up with its last point
     count = points.shape[1]
-    size = math.ceil(count / _STRETCHES)
+    size = math.ceil(count / stretches)
     starts = np.arange(0, count, size)
     filled = np.pad(points, ((0, 0), (0, len(starts) * size - count)), mode="edge")
-    stretches = filled.reshape(len(points), len(starts), size)
-    lowest = stretches.argmin(axis=2) + starts
-    highest = stretches.argmax(axis=2) + starts
+    parts = filled.reshape(len(points), len(starts), size)
+    lowest = parts.argmin(axis=2) + starts
+    highest = parts.argmax(axis=2) + starts
 
-    is_telling = np.zeros(count + 1, dtype=bool)
+    is_telling = np.zeros(count, dtype=bool)
     is_telling[starts] = True
     is_telling[lowest] = True
     is_telling[highest] = True
     is_telling[-1] = True
-    is_wide = np.diff(breaks) > (breaks[-1] - breaks[0]) / _STRETCHES
-    is_telling[:-1] |= is_wide
-    is_telling[1:] |= is_wide
     return np.flatnonzero(is_telling)
 
 
@@ -408,6 +416,10 @@ def in_units(panel: Panel, system: str) -> Panel:
     for kind, arrays in values_of_kinds.items():
         sizes = [float(np.nanmax(np.abs(values))) for values in arrays if values.size]
         units[kind] = shown_unit(kind, system, max(sizes, default=0.0)) if kind else ""
+    for mark in panel.marks:
+        kind = mark.figure.kind
+        if kind and kind not in units:
+            units[kind] = shown_unit(kind, system, abs(mark.figure.value or 0.0))
     x = partial(convert, kind=panel.x.kind, unit=units[panel.x.kind])
     y = partial(convert, kind=panel.y.kind, unit=units[panel.y.kind])
 
