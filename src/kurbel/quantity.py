@@ -149,6 +149,13 @@ class Quantity(NamedTuple):
             commands.append(command)
         return self._replace(commands=tuple(commands), heading=self.heading or heading)
 
+    @property
+    def zero(self) -> str:
+        """What a pressure counts from: `absolute`, `gauge`, '' of differences and of other quantities."""
+        if not self.gauge:
+            return ""
+        return "absolute" if self.mark else "gauge"
+
     def marked(self, unit: str) -> str:
         """Return the unit as it is shown."""
         return f"{unit} {self.mark}".rstrip()

@@ -48,6 +48,7 @@ NEEDS = {
     "solver.ideal_process": {"steam", "compressor", "otto", "diesel"},
     "solver.heat_release": {"heat"},
     "solver.indicated": {"trace"},
+    "solver.output_load": {"force"},
     "solver.shaft": {"crankshaft"},
     "solver.total_work": {"cylinders", "tandem"},
     "solver.valve": {"valve"},

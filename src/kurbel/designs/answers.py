@@ -343,7 +343,8 @@ Cell = Union[DesignValue, str]
 class Head(NamedTuple):
     """A column of a table of designs: its id, and the unit of its values, '' for none.
 
-    kind: of the values, '' of texts; input: whether it is a key that varies; listed: each value is a list.
+    kind: of the values, '' of texts; input: whether it is a key that varies; listed: each value is a list. zero: what
+    pressures count from, see `Quantity.zero`.
     """
 
     id: str
@@ -351,6 +352,7 @@ class Head(NamedTuple):
     kind: str = ""
     input: bool = False
     listed: bool = False
+    zero: str = ""
 
 
 class Design(NamedTuple):
@@ -443,7 +445,8 @@ class Study:
             id = f"{quantity.id}_at" if answer.angle else quantity.id
             if answer.alone or ids.count(quantity.id) > 1:
                 id = f"{answer.owner}.{id}"
-            heads.append(Head(id, unit, answer.kind, listed=quantity.listed))
+            head = Head(id, unit, answer.kind, listed=quantity.listed, zero=quantity.zero)
+            heads.append(head)
         return heads
 
     def of(self, columns: Sequence[KeyColumn]) -> list[DesignResult]:

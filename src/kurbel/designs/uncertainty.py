@@ -134,7 +134,7 @@ def _size_of(spread: str, value: float, kind: str) -> float:
     """Return an uncertainty in SI: with a unit, or in percent of the value."""
     if spread.endswith("%"):
         return abs(value) * parse_ratio(spread)
-    return parse_quantity(spread, kind)
+    return parse_quantity(spread, kind, is_difference=True)
 
 
 def uncertainties(

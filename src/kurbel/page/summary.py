@@ -149,7 +149,7 @@ def machine_kind(case: Case) -> str:
         for piston in cylinder.pistons:
             chambers += piston.chambers.values()
     if not chambers:
-        return "masses"
+        return "masses" if first.force is None else "ram"
     if firings(machine):
         return "engine"
     drives = any(cylinder.drive.drives for cylinder in case.cylinders)

@@ -219,6 +219,7 @@ def _energy_terms(forces: CylinderForces) -> Iterator[tuple[str, float]]:
         yield f"Friction {joint}", -(friction.get(name) or 0.0)
     yield "Friction given as a force", -(friction.get("constant") or 0.0)
     yield "What the output works against", forces.resistance_work
+    yield "Load on the output", forces.load_work
 
 
 # two machines side by side

@@ -18,7 +18,7 @@ from kurbel.solver.state import State
 
 if TYPE_CHECKING:
     from kurbel.machine.shaft_line import ShaftLine
-    from kurbel.solver.chapters.bearings import BearingColumns
+    from kurbel.solver.chapters.bearing import BearingColumns
     from kurbel.solver.flywheel import TurningState
 
 _MOST_NUMBERED = 24
@@ -151,14 +151,12 @@ def _driven_torque(state: State) -> Number:
 
 
 def driven_force(state: State) -> Number:
-    """Return the force in N of the pistons of a rod that do not drive, and of what a ram works against."""
-    force: Number = 0.0
-    if state.P_gas is not None:
-        P_driving = 0.0 if state.P_driving is None else state.P_driving
-        force = state.P_gas - P_driving
-    if state.P_ram is not None:
-        force = force + state.P_ram
-    return force
+    """Return the force in N of the pistons of a rod that do not drive, and of loads that the machine moves."""
+    force: Number = 0.0 if state.P_gas is None else state.P_gas
+    load = state.output_load
+    if load is not None:
+        force = force + load
+    return force - state.driving_force
 
 
 def _on_crank_1(source: Source, name: Words, torque: Array) -> CurveFormula:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from kurbel.declared.unit_systems import show
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import DeadCentre
+from kurbel.solver.dead_centre import DeadCentre
 from kurbel.tables.frame import Functions, Subject
 from kurbel.tables.tables import LeftOut
 

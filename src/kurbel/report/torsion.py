@@ -11,7 +11,8 @@ from kurbel.notes.warnings import of_machine
 from kurbel.quantity import Quantity, by_id
 from kurbel.report.harmonics import TORQUE_ORDERS, requested_orders
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.chain import Holzer, holzer_at, tree_from_first
+from kurbel.solver.chapters.chain import tree_from_first
+from kurbel.solver.chapters.natural_modes import Holzer, holzer_at
 from kurbel.solver.chapters.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
 from kurbel.tables.frame import Frame, Functions, Subject
 from kurbel.tables.shown import PlaceRow, Places

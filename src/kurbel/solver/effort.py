@@ -226,7 +226,7 @@ class TurningEffort:
         factor = where(drive.drives & drive.driven, self.machine.efficiency - 1.0, 0.0)
         if not some(factor != 0):
             return []
-        return [Term(factor, group, lambda state: state.P_driving * state.slope)]
+        return [Term(factor, group, lambda state: state.driving_force * state.slope)]
 
     @cached_property
     def terms(self) -> list[Term]:

@@ -22,21 +22,19 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Unsettled
-from kurbel.numerics.extreme import Extreme, Extremes
+from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.quantity import Computed, Heading, key_value, value
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, part
-from kurbel.solver.forces import CylinderForces
-from kurbel.solver.motion import every_dead_centre
 from kurbel.solver.piston_works import Brake
 from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
-from kurbel.solver.state import State
 from kurbel.solver.total_work import TotalWork
 
 if TYPE_CHECKING:
     from kurbel.solver.chapters.coupling import CouplingTorque, ElasticCoupling
+
 
 RIGID_ABOVE = 100.0
 """Natural order above which a coupling counts as rigid: it amplifies the first harmonics by no more than 1 in 10⁴."""
@@ -44,6 +42,8 @@ _MISSED = 1e-3
 """Relative deviation from the required δ above which there is a warning."""
 _LARGEST_EXPONENT = 709.7
 """exp of it is just below the largest float."""
+
+
 _DOUBLINGS, _TRIALS = 30, 20
 """Largest numbers of doublings in the search for a flywheel that turns, and of secant steps for one with a given δ."""
 _CLOSE = 1e-13
@@ -661,37 +661,3 @@ class MachineTurning(Results):
             if is_close:
                 return inertia - missed / slope
         return None
-
-
-class DeadCentre(Results):
-    """Key value of `kurbel flywheel` for a cylinder that drives a pump; cycle: of the machine in degrees."""
-
-    command = "flywheel"
-
-    def __init__(self, forces: CylinderForces, cycle: float) -> None:
-        self.forces, self._cycle = forces, cycle
-
-    @key_value("P_d + P_p", "force")
-    def P_dead_centre(self) -> Extreme | None:
-        """Force ahead of the pump at a dead centre, without inertia.
-
-        At the end of the stroke steam and pump both oppose the motion, and the parts before the pump must carry their
-        sum (R p. 613). None if the cylinder does not both drive and drive a pump.
-        """
-        forces, drive = self.forces, self.forces.drive
-        count = drive.count or 1
-        driving, driven = forces.work_driving, forces.work_driven
-        drives_a_pump = np.asarray(driving is not None and (driving > 0) & (driven < 0))
-        if not drives_a_pump.any():
-            return None
-
-        # just before and just after each dead centre
-        centres = every_dead_centre(drive.mechanism, count, drive.cycle)
-        angles = np.repeat(centres, 2, axis=1)
-        sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
-        machine = np.repeat(np.arange(count), angles.shape[1])
-        state = State.at(drive, angles.ravel(), sides.ravel(), machine)
-        values = state.P_gas.reshape(angles.shape)
-        largest = np.arange(count), np.abs(values).argmax(axis=1)
-        force = np.where(drives_a_pump, values[largest], np.nan)
-        return Extreme(forces.result(force), forces.result(np.mod(angles[largest], self._cycle)))

@@ -142,7 +142,8 @@ class CylinderForces(SampledCylinder, Results):
     def rows(self) -> Rows:
         """The rows that a machine with this mechanism may have, its pressures counted as in the machine file."""
         mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
-        of_ram = not cylinder.pistons and bool(cylinder.ram_force or mechanism.quick_return)
+        is_loaded = cylinder.ram_force is not None or cylinder.force is not None
+        of_ram = not cylinder.pistons and bool(is_loaded or mechanism.quick_return)
         absolute = bool(gas and gas.absolute)
         return _rows(
             mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, absolute, mechanism.guided, self.closed
@@ -257,6 +258,11 @@ class CylinderForces(SampledCylinder, Results):
     )
     resistance_work = value(
         "A_r", "energy", "Work per cycle of the resistance at the ram or rocker, negative"
+    )
+    load_work = value(
+        "A_L",
+        "energy",
+        "Work per cycle of the load `force` on the output, negative where the machine moves it",
     )
     power = value("N_i", "power", "Indicated power")
     mean_pressure = value("p_i", "pressure", "Mean indicated pressure of the cylinder's own piston")
@@ -436,6 +442,7 @@ class CylinderForces(SampledCylinder, Results):
         answers = dict[str, object]()
         answers["m"] = drive.mass if drive.cylinder.masses else None
         answers["resistance_work"] = drive.resistance_work
+        answers["load_work"] = drive.load and drive.load.work
         if pistons:
             answers["A_head"] = pistons[0].head_area
             answers["A_crank"] = pistons[0].crank_area
@@ -595,9 +602,9 @@ class CylinderForces(SampledCylinder, Results):
         """Work in J per cycle that reaches the shaft: indicated, less friction and that of the load on the output."""
         if not self.drive.has_force:
             return None
-        terms = (self.work, self.friction_work, self.resistance_work)
-        work, lost, resisted = (0.0 if term is None else term for term in terms)
-        return total(work, -lost, resisted)
+        work = 0.0 if self.work is None else self.work
+        lost = 0.0 if self.friction_work is None else self.friction_work
+        return total(work, -lost, self.drive.output_work)
 
     @shared
     def friction_works(self) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 Forces on the crosshead on the outstroke, 0 < φ < 180°; cylinder on the left, shaft on the right, crank pin above the
 stroke line:
 
-            ↓ G, S sin ψ        P  gas, inertia, weight, load on a ram;  G  weight across the stroke line
+            ↓ G, S sin ψ        P  gas, inertia, weight, loads;  G  weight across the stroke line
     P →  ───O───  ← S cos ψ     along it   S cos ψ = P − friction of crosshead, f |N|, and rings
             ↑ N   ← friction    across it  N = S sin ψ + G, from the lower guide, positive as drawn
 
@@ -35,7 +35,7 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.numerics.arithmetic import some, total
+from kurbel.numerics.arithmetic import some, spread, total
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import QuantityRow, column, value
@@ -171,10 +171,27 @@ class State(Chambers):
         "Force opposing the motion of a ram",
         lambda state: state.resistance if state.mechanism.slides else None,
     )
+
+    @column(
+        "P_L",
+        "force",
+        extremes=("forces",),
+        called="load on what slides or swings",
+    )
+    def P_load(self) -> Array | None:
+        """Load `force` on what slides, positive as P is; on what swings at its lever, positive where θ rises."""
+        load = self.drive.load
+        if load is None:
+            return None
+        force = load.without_points(self.displacement, self.drive.index)
+        if load.profile is not None:
+            force = force + self.pressure(load.profile)
+        return self.filled(force)
+
     P = value(
         "P",
         "force",
-        "Force along the stroke line: gas, inertia, weight and ram resistance",
+        "Force along the stroke line: gas, inertia, weight and loads",
         lambda state: _sum(state.P_inertia, state.P_start),
         extremes=("forces",),
         called="piston force",
@@ -198,7 +215,7 @@ class State(Chambers):
         "P_0",
         "force",
         "Force along the stroke line without inertia",
-        lambda state: _sum(_sum(state.P_gas, state.P_weight), state.P_ram),
+        lambda state: _sum(_sum(state.P_gas, state.P_weight), state.sliding_load),
         commands=(),
         extremes=("forces",),
         called="piston force without inertia: starting and slow running",
@@ -213,6 +230,28 @@ class State(Chambers):
         working_direction = 1.0 if self.mechanism.works_outward else -1.0
         works = self.direction == working_direction
         return self.filled(-self.direction * np.where(works, resistance.work, resistance.back))
+
+    @property
+    def output_load(self) -> Number | None:
+        """All loads on the output in N, or in N m where it swings or turns; positive where x or θ rises."""
+        load = self.drive.load
+        if load is None:
+            return self.resistance
+        return _sum(self.resistance, self.P_load * spread(load.lever, self.drive.index))
+
+    @property
+    def sliding_load(self) -> Number | None:
+        """All loads in N on what slides along the stroke line; None where the output swings or turns."""
+        return self.output_load if self.mechanism.slides else None
+
+    @property
+    def driving_force(self) -> Number:
+        """Force in N (moment in N m) at the output of pistons that drive, and of loads that drive."""
+        drive = self.drive
+        force: Number = 0.0 if self.P_driving is None else self.P_driving
+        if some(drive.load_drives):
+            force = force + self.output_load * spread(drive.load_drives, drive.index)
+        return force
 
     def rod_load(self, crosshead: bool = True) -> Array | None:
         """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft (API 618).
@@ -578,8 +617,8 @@ class State(Chambers):
     M_out = value(
         "M_2",
         "torque",
-        "Resisting moment on the rocker, or on the second crank",
-        lambda state: None if state.mechanism.slides else state.resistance,
+        "Moment of the load on the rocker, or on the second crank",
+        lambda state: None if state.mechanism.slides else state.output_load,
     )
 
     @property

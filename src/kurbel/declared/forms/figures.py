@@ -167,6 +167,7 @@ class FigureForm(Form):
 
     def __init__(self, size: NumberForm) -> None:
         self.size = size
+        self.tolerance = NumberForm(size.kind, is_difference=True)
         self.absolute = f"{size.example} ± 0.1 {written_unit(size.example)}".rstrip()
         sample = f"{size.example} ± 0.5 %"
         tolerated = f"a figure and its tolerance, such as '{sample}' or '{self.absolute}'"
@@ -191,7 +192,7 @@ class FigureForm(Form):
         if percent:
             tolerance = float(percent[1]) / 100 * abs(figure)
         else:
-            tolerance = self.size.read(reading, Plain(tolerance_text), path)
+            tolerance = self.tolerance.read(reading, Plain(tolerance_text), path)
         if tolerance is REFUSED:
             return REFUSED
         if not tolerance > 0:
