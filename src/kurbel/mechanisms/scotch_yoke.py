@@ -23,7 +23,7 @@ _N_PAIR = force_column(
     "force",
     "Force on each of the two guides of a yoke, in opposite directions",
     lambda yoke, angle: yoke.guide_pair_factor(angle),
-    lambda state: state.along_rod,
+    lambda state: state.along_stroke,
 )
 
 
@@ -37,7 +37,7 @@ class ScotchYoke(Mechanism):
     """
 
     crank: float = crank_field()
-    _stroke = stroke_instead(lambda given: {"crank": given["stroke"] / 2})
+    _stroke = stroke_instead(lambda keys: {"crank": keys["stroke"] / 2})
     guide_length: float | None = field(
         "length",
         "Distance along the stroke of the two guides that keep the yoke from tilting",

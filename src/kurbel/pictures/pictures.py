@@ -52,7 +52,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.state import State
 from kurbel.tables.frame import equal_parts
-from kurbel.tables.tables import cylinder_meant, grouped, together
+from kurbel.tables.tables import cylinder_meant, grouped, joined_names
 
 if TYPE_CHECKING:
     from kurbel.pictures.measured import TracePictures
@@ -512,5 +512,5 @@ def _sources_of_parts(
     for group in equal_parts(parts, command):
         chosen = [subject for subject in group if are_bearings or name in (None, subject.name)]
         if chosen:
-            names = together([subject.name for subject in chosen]) if are_several else ""
+            names = joined_names([subject.name for subject in chosen]) if are_several else ""
             yield Source(chosen[0].results, options.angles), names

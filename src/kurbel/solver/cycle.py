@@ -23,7 +23,7 @@ from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, Samples, joined_pieces, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import result
-from kurbel.solver.state import State, on_crosshead_pin, on_pin
+from kurbel.solver.state import State, crank_pin_force, crosshead_pin_force
 
 T = TypeVar("T")
 
@@ -104,9 +104,7 @@ class SampledCylinder:
         """Largest last coefficients of the Chebyshev series on pieces that could be halved, over the largest value."""
         values = np.stack(_known(self.pieces, _smooth(self.samples)))
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
-        tails = np.abs(self.pieces.rule.tail @ values).max(axis=1)[
-            :, self.pieces.half > NARROWEST
-        ]
+        tails = np.abs(self.pieces.rule.tail @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
         return float((tails.max(axis=1) / size).max())
 
     # extremes and zeros
@@ -197,9 +195,9 @@ def _before_friction(state: State) -> list[Array]:
     return [state.filled(column) for column in columns]
 
 
-def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
+def _restored(drive: Drive, pieces: Pieces, samples: Samples) -> State:
     """Return the state on pieces from the values of `_before_friction` there, each (nodes, pieces)."""
-    sin, cos, slope, curvature, *rest = known
+    sin, cos, slope, curvature, *rest = samples
     pistons = len(rest) - len(drive.gas)
     angle = CrankAngle(pieces.degrees, sin, cos, (rest[0], rest[1]) if pistons else None)
     state = State(drive.taken(pieces.machine), angle, pieces.middle)
@@ -210,9 +208,9 @@ def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
 def _loads_of_pins(state: State) -> list[Number]:
     """Return the loads of the pins without their friction: where one passes through zero, its magnitude has a kink."""
     free = state.without_pin_friction
-    loads = [on_pin(free).T]
+    loads = [crank_pin_force(free).T]
     if free.rod_angle:
-        loads.append(on_crosshead_pin(free).D)
+        loads.append(crosshead_pin_force(free).D)
     return loads
 
 
@@ -234,7 +232,7 @@ def _sense_with_pins(state: State) -> list[Number]:
 def _sense(state: State) -> Number:
     """Return the force in N whose sign decides which side of a guide, or of a Scotch yoke, is loaded."""
     if state.rod_angle:
-        return state.guide_sense
+        return state.guide_sign
     return state.after_steady_friction
 
 
