@@ -74,7 +74,7 @@ def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:
     point in their middle is off the line. Of a crowd of breaks the line goes from one telling break to the next.
     """
     middles = (breaks[:-1] + breaks[1:]) / 2
-    shown = np.arange(len(breaks))
+    shown: Indices = np.arange(len(breaks))
     if len(breaks) > _CROWDED:
         shown = _shown_breaks(breaks, values(breaks[:-1], middles))
         breaks = breaks[shown]
