@@ -152,7 +152,7 @@ def _log_values(low: float, high: float) -> Array:
     """Return the powers of ten from below to above two values; of few powers also 2 and 5 of each."""
     first = math.floor(math.log10(low))
     last = math.ceil(math.log10(high) or 1)
-    powers: Array = 10.0 ** np.arange(first, last + 1)
+    powers: Array = np.asarray(10.0 ** np.arange(first, last + 1), dtype=float)
     if high >= _MOST_FEW * low:
         return powers
     values = np.sort(np.concatenate((powers, 2 * powers[:-1], 5 * powers[:-1])))
