@@ -43,9 +43,9 @@ def unknown(machine: Machine, quantity: str) -> Iterator[str]:
         yield "link rods"
     for cylinder in taking_part(machine, quantity):
         for piston in cylinder.pistons:
-            cards = piston.chambers.values()
-            if not all(isinstance(card, KNOWN_CARDS) for card in cards):
-                yield "a trace"
+            for card in piston.chambers.values():
+                if not isinstance(card, KNOWN_CARDS):
+                    yield "a trace" if card.traced else "a card by Wiebe"
         friction = cylinder.friction
         if friction and friction.journals and machine.crankshaft is not None:
             yield "journals that rub in the bearings of a crankshaft"

@@ -37,7 +37,7 @@ def construction(source: Source) -> Iterator[Panel]:
         elif lever and omega:
             panels["Velocity"] = _of_lever(source, lever, angle, omega)
         for title, panel in panels.items():
-            yield panel._replace(title=f"{title}, {_at(degrees)}")
+            yield panel._replace(title=f"{title}, {_at(degrees)}", angle=degrees)
 
 
 def polar_force(source: Source) -> Iterator[Panel]:
@@ -78,7 +78,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
             line=[(0j, end), (0j, cut)],
         )
         curves = (*panel.curves, *construction.curves)
-        yield construction._replace(curves=curves, title=_at(degrees))
+        yield construction._replace(curves=curves, title=_at(degrees), angle=degrees)
 
 
 def _at(degrees: float) -> str:
