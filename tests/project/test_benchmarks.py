@@ -16,7 +16,8 @@ BRIEF = {
     "random_machines.py": ["5"],
     "reading.py": ["500"],
     "speed_lines.py": ["1"],
-    "start_up.py": ["1"],
+    "start_up.py": ["1", "table"],
+    "torsion.py": ["1"],
 }
 
 

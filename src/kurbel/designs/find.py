@@ -225,10 +225,10 @@ class Solutions:
 
         if len(wanted_values) == 1:
             size = abs(float(wanted_values[0]))
-            places, jumps, ends = roots(lambda shares: differences(shares)[:, 0], size)
+            positions, jumps, ends = roots(lambda shares: differences(shares)[:, 0], size)
             if not self.depends(0):
                 return
-            shares = places[:, None]
+            shares = positions[:, None]
         else:
             shares = common_roots(differences)
             jumps = np.zeros(len(shares), dtype=bool)

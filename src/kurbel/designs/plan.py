@@ -230,7 +230,7 @@ def _range(text: str, written: str) -> tuple[tuple[float, ...], str]:
 
 def _distribution(text: str, name: str, inside: str) -> tuple[NormalDist | Uniform, str]:
     if name not in _DISTRIBUTIONS:
-        names = ", ".join(f"{known}({words})" for known, words in _DISTRIBUTIONS.items())
+        names = ", ".join(f"{word}({words})" for word, words in _DISTRIBUTIONS.items())
         raise _refused(text, f"no distribution '{text_in_one_line(name)}'; known are {names}")
     expected = f"{name}({_DISTRIBUTIONS[name]}) has two numbers, such as normal(450 mm, 0.2 mm)"
     is_normal = name == "normal"

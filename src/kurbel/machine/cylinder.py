@@ -233,11 +233,11 @@ class Cylinder(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
         like = "'like' is for a list of 'cylinders', after another cylinder"
-        yield Rule("like", "like" in given, like)
+        yield Rule("like", "like" in values, like)
         alone = "a tandem piston is in addition to the cylinder's own one; give its 'bore'"
-        yield Rule("tandem", bool(given.get("tandem")) and "piston" not in given, alone)
+        yield Rule("tandem", bool(values.get("tandem")) and "piston" not in values, alone)
 
     @classmethod
     def of_keys(
@@ -250,8 +250,8 @@ class Cylinder(Record):
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
         pistons = () if piston is None else (piston, *tandem)
-        given = {"name": "", "crank_position": None, "throw_angle": throw_angle, **keys}
-        return cls(pistons=pistons, **given)
+        values = {"name": "", "crank_position": None, "throw_angle": throw_angle, **keys}
+        return cls(pistons=pistons, **values)
 
     @cached_property
     def timed_pistons(self) -> tuple[Piston, ...]:

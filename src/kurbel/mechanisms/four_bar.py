@@ -146,8 +146,8 @@ class FourBar(Mechanism):
         a, b, c = crank / frame, coupler / frame, rocker / frame
         near, far = min(crank, frame), max(crank, frame)
         flat, near_coupler, near_rocker = (
-            math.fsum(one) / frame
-            for one in (
+            math.fsum(terms) / frame
+            for terms in (
                 (coupler, rocker, -crank, -frame),  # b + c − a − 1
                 (far, coupler, -near, -rocker),  # |1 − a| + b − c
                 (far, rocker, -near, -coupler),

@@ -35,7 +35,7 @@ class OscillatingCylinder(Mechanism):
     """
 
     crank: float = crank_field()
-    _stroke = stroke_instead(lambda given: {"crank": given["stroke"] / 2})
+    _stroke = stroke_instead(lambda keys: {"crank": keys["stroke"] / 2})
     trunnion: float = field(
         "length",
         "Distance of the trunnions from the shaft",

@@ -37,7 +37,7 @@ class ScotchYoke(Mechanism):
     """
 
     crank: float = crank_field()
-    _stroke = stroke_instead(lambda given: {"crank": given["stroke"] / 2})
+    _stroke = stroke_instead(lambda keys: {"crank": keys["stroke"] / 2})
     guide_length: float | None = field(
         "length",
         "Distance along the stroke of the two guides that keep the yoke from tilting",

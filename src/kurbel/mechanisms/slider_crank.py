@@ -113,7 +113,7 @@ class SliderCrank(Mechanism):
     """
 
     crank: float = crank_field()
-    _stroke = stroke_instead(lambda given: {"crank": _crank_of_stroke(given)})
+    _stroke = stroke_instead(lambda keys: {"crank": _crank_of_stroke(keys)})
     rod: float = field(
         "length",
         "Length of the connecting rod, or `infinite`; or give `rod_ratio`",
@@ -131,7 +131,7 @@ class SliderCrank(Mechanism):
         instead="rod",
         example="5",
         usual="5 in horizontal machines, down to 4.5 and 4 in vertical ones (R p. 603)",
-        gives=lambda given: {"rod": given["crank"] * given["rod_ratio"]},
+        gives=lambda keys: {"rod": keys["crank"] * keys["rod_ratio"]},
         key="rod_ratio",
     )
     offset: float = field(

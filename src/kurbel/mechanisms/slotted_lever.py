@@ -69,9 +69,9 @@ class SlottedLever(Mechanism):
         above=0,
         instead="crank",
         needs="lever",
-        gives=lambda given: (
-            {"crank": given["stroke"] * given["frame"] / (2 * given["lever"])}
-            if given.get("frame") and given.get("lever")
+        gives=lambda keys: (
+            {"crank": keys["stroke"] * keys["frame"] / (2 * keys["lever"])}
+            if keys.get("frame") and keys.get("lever")
             else {}
         ),
         key="stroke",

@@ -185,15 +185,15 @@ def torque_orders(source: Source) -> Iterator[Panel]:
     is_drawn = source.results.orders <= _HIGHEST
     orders = source.results.orders[is_drawn]
     name = Words("|M_ν|", words="amplitude")
-    whole = np.abs(machine.whole)[is_drawn]
+    of_machine = np.abs(machine.whole)[is_drawn]
     parts = []
     for spectrum in (machine.gas, machine.inertia):
         if spectrum is not None:
             parts.append(np.abs(spectrum)[is_drawn])
     # a single part is all
     has_both = len(parts) == 2 and all(part.any() for part in parts)
-    if whole.any():
-        yield _bars(orders, [whole], name, "torque", "all" if has_both else "")
+    if of_machine.any():
+        yield _bars(orders, [of_machine], name, "torque", "all" if has_both else "")
     if has_both:
         yield _bars(orders, parts, name, "torque", "left: gas, weight, friction; right: inertia")
 

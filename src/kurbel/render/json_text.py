@@ -234,8 +234,8 @@ def findings_junit(
     sentence after its key, and none occurs twice. Elements and attributes are those of the schema of Jenkins.
     """
     root = ElementTree.Element("testsuites", name="kurbel")
-    for file, found in checks:
-        findings = [finding for finding in found if not _is_left_out(finding)]
+    for file, of_file in checks:
+        findings = [finding for finding in of_file if not _is_left_out(finding)]
         file_name = look.data(file)
         failures = sum(finding["severity"] == "error" for finding in findings)
         attributes = {

@@ -223,10 +223,10 @@ def whole_file(file_name: str) -> str:
     return os.path.realpath(file_name)  # a link stays one
 
 
-def _is_same(one: os.stat_result, other: str | int) -> bool:
+def _is_same(file: os.stat_result, other: str | int) -> bool:
     """Return whether a file is the one with this name or descriptor; /dev/stdout, for one, has another name."""
     with suppress(OSError, ValueError):
-        return os.path.samestat(one, os.stat(other))
+        return os.path.samestat(file, os.stat(other))
     return False
 
 

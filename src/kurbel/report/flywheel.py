@@ -27,7 +27,7 @@ def _turned(case: Case) -> list[Subject]:
     subjects = []
     for cylinder in case.cylinders:
         subjects.append(Subject(cylinder.drive.name, DeadCentre(cylinder, effort.cycle)))
-    whole = Subject(
+    machine_subject = Subject(
         "whole machine",
         turning,
         turning.at if effort.swing is None else None,
@@ -35,7 +35,7 @@ def _turned(case: Case) -> list[Subject]:
         warnings=_warnings(case),
         whole=True,
     )
-    return [*subjects, whole]
+    return [*subjects, machine_subject]
 
 
 def _flywheel_notes(case: Case) -> Iterator[str]:

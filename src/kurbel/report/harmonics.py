@@ -68,7 +68,7 @@ def _harmonics(
     why = ""
     if harmonics.machine.inertia is None:
         why = "no masses, or no speed given" if cylinders else "the effort is given as a torque"
-    whole = Subject(
+    machine_subject = Subject(
         "whole machine",
         harmonics,
         left_out=chain(flywheel_left_out(machine), missing({"gas and inertia apart": why})),
@@ -76,7 +76,7 @@ def _harmonics(
         tables=_orders_of_machine(harmonics, speeds or (), machine.speed),
         whole=True,
     )
-    return [*cylinders, whole], _harmonics_notes(harmonics)
+    return [*cylinders, machine_subject], _harmonics_notes(harmonics)
 
 
 HARMONICS = Functions("Harmonics of the turning effort", whole_machine("harmonics"), own=_harmonics)

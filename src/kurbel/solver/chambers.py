@@ -183,7 +183,7 @@ class Chambers(MotionColumns):
 
     def force_on(self, gas: PistonGas, mean_area: bool = False) -> Array:
         """Return the gas force p_H A_H − p_C A_C in N on a piston (R 296); mean_area: both ½(A_H + A_C) (R 297)."""
-        head, crank = (spread(one, self.drive.index) for one in gas.areas)
+        head, crank = (spread(area, self.drive.index) for area in gas.areas)
         if mean_area:
             head = crank = (head + crank) / 2
         sense = -1.0 if gas.turned else 1.0
@@ -200,9 +200,11 @@ class Chambers(MotionColumns):
 
     def force_of(self, shares: Sequence[Truth]) -> Array | None:
         """Return the gas force in N on those pistons whose share is true, in each machine; None without any."""
-        each = zip(self.piston_forces, shares)
+        forces_and_shares = zip(self.piston_forces, shares)
         counted = [
-            force * spread(share, self.drive.index) for force, share in each if share is not False
+            force * spread(share, self.drive.index)
+            for force, share in forces_and_shares
+            if share is not False
         ]
         if not counted:
             return None

@@ -197,9 +197,9 @@ def _before_friction(state: State) -> list[Array]:
     return [state.filled(column) for column in columns]
 
 
-def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
+def _restored(drive: Drive, pieces: Pieces, samples: Samples) -> State:
     """Return the state on pieces from the values of `_before_friction` there, each (nodes, pieces)."""
-    sin, cos, slope, curvature, *rest = known
+    sin, cos, slope, curvature, *rest = samples
     pistons = len(rest) - len(drive.gas)
     angle = CrankAngle(pieces.degrees, sin, cos, (rest[0], rest[1]) if pistons else None)
     state = State(drive.taken(pieces.machine), angle, pieces.middle)

@@ -199,10 +199,10 @@ class SpeedEquation:
         inertia = moving + pieces.of(self.flywheel)
         return np.stack((excess, inertia * pieces.of(self._effort.omega**2 / 2)))
 
-    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
+    def rate(self, samples: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return z′ and its derivative by z."""
         assert self._law
-        excess, energy = known
+        excess, energy = samples
         rise, slope = self._law.rise(y[0] / energy, pieces)
         return (excess - rise)[None], (-slope / energy)[None, None]
 

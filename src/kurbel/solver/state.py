@@ -408,8 +408,8 @@ class State(Chambers):
     @property
     def knuckle_momentum_rate(self) -> Number:
         """Rate m_k ω² Im(z* z″) in N m of the moment of momentum of that mass about the shaft."""
-        place = self.linked_piston.knuckle_place(self.angle)
-        rate: Number = -(np.conj(place) * self._knuckle_inertia).imag
+        knuckle = self.linked_piston.knuckle_place(self.angle)
+        rate: Number = -(np.conj(knuckle) * self._knuckle_inertia).imag
         return rate
 
     @cached_property

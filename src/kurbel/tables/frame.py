@@ -212,13 +212,13 @@ def report_on(
     has_tables = bool(ids) or any(rows.tables for rows in with_rows)
     with_values = frame.prose or not has_tables
     parts = [_part(rows, frame, with_values) for rows in with_rows]
-    whole = parts.pop() if with_rows and with_rows[-1].subject.whole else None
+    of_machine = parts.pop() if with_rows and with_rows[-1].subject.whole else None
     return Report(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
         _PARTS.get(frame.command, "cylinders"),
-        whole=whole,
+        whole=of_machine,
         parts=tuple(parts),
         notes=(*notes, *_added_notes(frame, with_rows, ids)) if frame.prose else (),
         provenance=partial(provenance, machine) if frame.prose else None,
@@ -293,7 +293,7 @@ def _report_on_names(
     scopes = {choice.scope for choice in choices}
     named_pistons = [piston for piston in pistons if piston.name in scopes]
 
-    parts, whole = list[Part](), None
+    parts, of_machine = list[Part](), None
     printed = set[ChosenValue]()
     for subject in (*subjects, *named_pistons):
         chosen = list(subject.named(choices))
@@ -304,7 +304,7 @@ def _report_on_names(
         key_values = tuple(_with_sides(subject, shown_key_values(chosen, frame.system), chosen))
         part = Part(subject.name, (), key_values, (), tuple(subject.warnings), of=subject.of)
         if subject.whole:
-            whole = part
+            of_machine = part
         else:
             parts.append(part)
 
@@ -317,7 +317,7 @@ def _report_on_names(
         machine.name,
         "bearings" if frame.command == "bearings" else "cylinders",
         tuple(parts),
-        whole,
+        of_machine,
         provenance=partial(provenance, machine),
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )

@@ -46,7 +46,7 @@ class ChainEquation:
         self._driving = driving
         self._law = law
         self.noise = np.zeros(pieces.count)
-        self._order, omega = (np.broadcast_to(one, pieces.count) for one in (order, omega))
+        self._order, omega = (np.broadcast_to(number, pieces.count) for number in (order, omega))
         parts = np.ceil(2 * pieces.half * self._order[pieces.machine] / _SWING).clip(1, _MOST_PARTS)
         self.pieces = pieces.parted(parts.astype(int))
 
@@ -95,9 +95,11 @@ class ChainEquation:
             (torques, np.broadcast_to(pieces.of(self._height), (1, *torques.shape[1:])))
         )
 
-    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array | None]:
+    def rate(
+        self, torques_and_height: Array, y: Array, pieces: Pieces
+    ) -> tuple[Array, Array | None]:
         """Return y′ and its derivative by y, None where the modes are known."""
-        torques, height = known[:-1], known[-1]
+        torques, height = torques_and_height[:-1], torques_and_height[-1]
         rate = self._flow(y, pieces.machine)[1]
         rate[-len(torques) :] += torques
         slope = None

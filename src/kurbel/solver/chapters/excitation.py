@@ -105,11 +105,11 @@ def excitation(effort: TurningEffort, line: ShaftLine, orders: Array) -> Excitat
     """Return what acts on the masses of a shaft line, order by order; the load takes the mean of all torques."""
     torques, of_inertia = torques_on(effort, line)
     count = len(torques)
-    both = np.concatenate((torques - of_inertia, of_inertia))
-    acting = both.any(axis=(1, 2))
+    parts = np.concatenate((torques - of_inertia, of_inertia))
+    acting = parts.any(axis=(1, 2))
     by_order = np.zeros((2 * count, len(orders)), complex)
-    by_order[acting] = amplitudes(effort.pieces, both[acting], orders)[..., 0]
-    by_order = unless_cancelled(by_order, np.abs(both).max(axis=(1, 2))[:, None], _ROUNDING)
+    by_order[acting] = amplitudes(effort.pieces, parts[acting], orders)[..., 0]
+    by_order = unless_cancelled(by_order, np.abs(parts).max(axis=(1, 2))[:, None], _ROUNDING)
 
     means = effort.mean_of(torques)[:, 0]
     if not line.is_held:
@@ -250,6 +250,6 @@ def mean_torques(chain: Chain, means: Array) -> Array:
 def mean_inertia(drive: Drive) -> float:
     """Return the mean over the turn of the reduced moment of inertia of a cylinder in kg m², whatever forces act."""
     pieces, inertia = refined(
-        drive.pieces, lambda some: reduced_inertia(State.on(drive, some))[None]
+        drive.pieces, lambda pieces: reduced_inertia(State.on(drive, pieces))[None]
     )
     return float(pieces.mean(inertia[0])[0])

@@ -179,15 +179,15 @@ class FilmEquation:
 
     def known(self, pieces: Pieces) -> Array:
         """Return both parts of K F, and τ."""
-        known = pieces.carried(self._course, self._pieces)
+        course = pieces.carried(self._course, self._pieces)
         load_share = pieces.of(self.share)
-        return known * np.stack((load_share, load_share, np.ones_like(load_share)))[:, None]
+        return course * np.stack((load_share, load_share, np.ones_like(load_share)))[:, None]
 
-    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
+    def rate(self, course: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return y′ = |K F| (M + y (y·M)) √(1 + y²) + ½ i τ y, and its derivative by y."""
-        size = np.hypot(known[0], known[1])
-        cos, sin = known[:2] / np.where(size > 0, size, 1.0)
-        half_turning = known[2] / 2
+        size = np.hypot(course[0], course[1])
+        cos, sin = course[:2] / np.where(size > 0, size, 1.0)
+        half_turning = course[2] / 2
         # along and across the load, with a complex step of either
         step = 1j * _STEP * np.eye(2)[:, :, None, None]
         p = cos * y[0] + sin * y[1] + step[0]
