@@ -38,6 +38,7 @@ TEACHING = {
     "mill-engine": "zeuner",
     "odd-fire-v6": "free-orders",
     "offset-engine": "mechanism",
+    "plunger-pump": "flow",
     "press": "effort",
     "pumpjack": "mechanism",
     "punch": "effort",
