@@ -9,7 +9,7 @@ import pytest
 
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftPart, line_of
-from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
+from kurbel.machine.shaft_side import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.chain import Chain, response, row_of_joins

@@ -11,7 +11,7 @@ from kurbel.declared.units import DiagramPoint, UnitFactor
 from kurbel.errors import refused
 from kurbel.machine.cylinder import MOST_TURNS
 from kurbel.machine.measured import Columns
-from kurbel.machine.turning import (
+from kurbel.machine.shaft_side import (
     HARMONICS,
     MEAN,
     POINTS,
