@@ -38,11 +38,8 @@ TEACHING = {
     "mill-engine": "zeuner",
     "odd-fire-v6": "free-orders",
     "offset-engine": "mechanism",
-<<<<<<< HEAD
     "plunger-pump": "flow",
-=======
     "petrol-engine": "card-volume",
->>>>>>> main
     "press": "effort",
     "pumpjack": "mechanism",
     "punch": "effort",
