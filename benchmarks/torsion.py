@@ -22,8 +22,9 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 from test_torsion import at_random, eigenvalues
 
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftSegment
-from kurbel.solver.chapters.chain import Chain, Modes
-from kurbel.solver.chapters.torsion import Excitation, Vibration
+from kurbel.solver.chapters.chain import Chain
+from kurbel.solver.chapters.excitation import Excitation, Vibration
+from kurbel.solver.chapters.natural_modes import Modes
 
 
 def seconds(work: Callable[[], object]) -> float:

@@ -38,6 +38,8 @@ TEACHING = {
     "mill-engine": "zeuner",
     "odd-fire-v6": "free-orders",
     "offset-engine": "mechanism",
+    "press": "effort",
+    "pumpjack": "mechanism",
     "punch": "effort",
     "radial-three": "free-vectors",
     "scotch-yoke-pump": "mechanism",

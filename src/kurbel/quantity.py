@@ -115,7 +115,9 @@ class Quantity(NamedTuple):
         if self.group:
             return self.group
         stem, _, end = self.id.rpartition("_")
-        return stem if end in ("max", "min", "peak", "mean") else self.id
+        if end in ("max", "min", "peak", "mean"):
+            return stem
+        return self.id
 
     def is_noise(self, value: float) -> bool:
         """Whether this value is a residual of rounding alone."""
@@ -124,7 +126,9 @@ class Quantity(NamedTuple):
     def absolute(self) -> Quantity:
         """Return the quantity of a machine whose pressures are absolute."""
         text = self.text.replace("Gauge", "Absolute").replace("gauge", "absolute")
-        return self._replace(text=text, mark="abs") if self.gauge else self
+        if not self.gauge:
+            return self
+        return self._replace(text=text, mark="abs")
 
     def of_ram(self) -> Quantity:
         """Return the quantity of a machine that drives a ram and has no piston."""
@@ -144,6 +148,13 @@ class Quantity(NamedTuple):
         if command and command not in commands:
             commands.append(command)
         return self._replace(commands=tuple(commands), heading=self.heading or heading)
+
+    @property
+    def zero(self) -> str:
+        """What a pressure counts from: `absolute`, `gauge`, '' of differences and of other quantities."""
+        if not self.gauge:
+            return ""
+        return "absolute" if self.mark else "gauge"
 
     def marked(self, unit: str) -> str:
         """Return the unit as it is shown."""
@@ -169,7 +180,9 @@ def first_words(sentence: str) -> str:
     'Largest velocity'
     """
     first = _FIRST_WORDS.match(sentence)
-    return first.group().strip() if first else sentence
+    if not first:
+        return sentence
+    return first.group().strip()
 
 
 def by_id(*quantities: Quantity) -> dict[str, Quantity]:
@@ -240,7 +253,9 @@ def in_sentences(word: str, quantities: Iterable[Quantity]) -> str:
         return ""
     with_word = (quantity for quantity in quantities if words in quantity.text.lower())
     ids = dict.fromkeys(quantity.id for quantity in with_word)
-    return f"; it is in the sentences of {', '.join(ids)}" if ids else ""
+    if not ids:
+        return ""
+    return f"; it is in the sentences of {', '.join(ids)}"
 
 
 def rejoined_names(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str]:
@@ -411,7 +426,9 @@ class ForEach:
         self.of, self.rows = of, rows
 
     def __get__(self, results: object | None, owner: type) -> Any:
-        return self if results is None else partial(self.of, results)
+        if results is None:
+            return self
+        return partial(self.of, results)
 
 
 def values_for(

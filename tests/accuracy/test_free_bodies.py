@@ -133,11 +133,13 @@ LOSSES = """
 {speed: 60 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, efficiency: 0.9,
  indicator: {head_end: {unit: bar, expansion: [[0, 8], [0.4, 8], [1, 2]], compression: [[1, 0.2], [0, 1]]}},
  tandem: [{bore: 200 mm, indicator: {head_end: {constant: {expansion: -0.4 bar, compression: 8 bar}}}}],
+ force: {unit: kN, points: [[0, 6, 0.5], [0.3, 4, 0.5], [0.3, 7, 1], [1, 7, 1]]}, ram_force: {return: -300 N},
  flywheel: {inertia: 900 kg m2}}
 """
 DRIVEN = """
 {mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm,
- moment: {work: 40 N m, return: 10 N m}, efficiency: 0.8,
+ moment: {work: 40 N m, return: -5 N m}, efficiency: 0.8,
+ force: {lever: 0.2 m, constant: -30 N, spring: 400 N/m, preload: 9 N, unit: N, points: [[0, 20, 90], [1, 50, 40]]},
  load: {unit: N m, mean: -8, harmonics: [[2, 3, 4]]}}
 """
 
@@ -148,8 +150,8 @@ DRIVEN = """
         pytest.param(EXACT, id="exact rod"),
         pytest.param(RUBBING, id="pins and rings by gas"),
         pytest.param(YOKE, id="yoke"),
-        pytest.param(LOSSES, id="efficiency"),
-        pytest.param(DRIVEN, id="driven rocker and a load by harmonics"),
+        pytest.param(LOSSES, id="efficiency and a load that helps"),
+        pytest.param(DRIVEN, id="driven rocker with forces and a load by harmonics"),
     ],
 )
 def test_kurbel_agrees_with_free_bodies(text: str) -> None:

@@ -13,7 +13,7 @@ import pytest
 
 from browser import CHROMIUM, dumped, served
 from kurbel.cli import COMMANDS, kurbel
-from kurbel.declared.units import kinds, unit_names
+from kurbel.declared.units import kinds, listed_units
 from kurbel.quantities import every_quantity
 from kurbel.report.keys import every_place
 
@@ -51,7 +51,7 @@ def words(site: Path, page: str) -> str:
 
 def test_every_key_unit_column_key_value_and_option_is_on_the_site(site: Path) -> None:
     quantities = every_quantity()
-    units = [unit for kind in kinds() for unit in unit_names(kind)]
+    units = [unit for kind in kinds() for unit in listed_units(kind)]
     options = [
         option
         for name in COMMANDS

@@ -21,8 +21,8 @@ from kurbel.machine_file import loads
 from kurbel.mechanisms.link_rod import LinkedPiston
 from kurbel.mechanisms.oscillating_cylinder import OscillatingCylinder
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.balance import _of_knuckles
 from kurbel.solver.chapters.bearings import MasterPin
+from kurbel.solver.chapters.unbalanced import _of_knuckles
 from kurbel.solver.effort import torque_of_inertia
 from kurbel.solver.state import State, reduced_inertia
 

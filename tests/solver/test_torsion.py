@@ -12,8 +12,10 @@ from kurbel.machine.shaft_line import ShaftPart, line_of
 from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.chain import Chain, Modes, holzer_at, response, row_of_joins
-from kurbel.solver.chapters.torsion import ShaftVibration, Vibration
+from kurbel.solver.chapters.chain import Chain, response, row_of_joins
+from kurbel.solver.chapters.excitation import Vibration
+from kurbel.solver.chapters.natural_modes import Modes, holzer_at
+from kurbel.solver.chapters.torsion import ShaftVibration
 from representative import CONFIGS, few
 
 ENDS = {"": 0, "before": 1, "after": 1, "both": 2}

@@ -24,6 +24,7 @@ import numpy as np
 from kurbel.accuracy.cards import KNOWN_CARDS, CardProcess, Fractions, StrokeLine, drawn
 from kurbel.accuracy.jets import Jet
 from kurbel.accuracy.linkages import RodMotion, Stance, TextbookMotion, motion_of
+from kurbel.accuracy.loads import TextbookLoads
 from kurbel.accuracy.methods import (
     Precise,
     integrals,
@@ -164,11 +165,10 @@ class TextbookCylinder:
         self._crankshaft = machine.crankshaft
         self._set_masses(machine.inclination_of(cylinder))
         self._set_friction(cylinder.friction)
-        resistance = cylinder.ram_force or cylinder.moment
-        self._resistance = [mpf(0), mpf(0)]
-        if resistance is not None:
-            self._resistance = [mpf(resistance.work), mpf(resistance.back)]
-
+        motion = self.motion
+        self._loads_on_output = TextbookLoads(
+            cylinder, motion.stroke, self.turns, motion.works_out, motion.never_returns
+        )
         self.pistons = [self._piston(machine, number) for number in range(len(cylinder.pistons))]
         self._piece = cache(self._piece_of)
         self._states: dict[tuple[int, int], Forces] = {}
@@ -287,6 +287,7 @@ class TextbookCylinder:
         for piston in self.pistons:
             for chamber in piston.chambers:
                 shares |= {chamber.fraction(line.begin) for line in chamber.lines(stroke)}
+        shares |= self._loads_on_output.fractions(is_back=stroke % 2 == 1)
         return shares - {0, 1}
 
     def _between_kinks(self) -> Array:
@@ -309,10 +310,9 @@ class TextbookCylinder:
         back = since - 360 * turn > outer - inner
         share = self._share(within)
         stroke = 2 * turn + back
-        lines = [
-            [chamber.line_at(stroke, share) for chamber in piston.chambers]
-            for piston in self.pistons
-        ]
+        lines = []
+        for piston in self.pistons:
+            lines.append([chamber.line_at(stroke, share) for chamber in piston.chambers])
         return -1 if back and not self.motion.never_returns else 1, lines
 
     # forces
@@ -333,19 +333,19 @@ class TextbookCylinder:
         pose = self.motion.at(phi)
         sense, lines = self._piece(within)
         gas = self._gas(pose, lines)
-        resistance = self._resistance[0 if (sense > 0) == self.motion.works_out else 1]
+        share = (pose.x - self.motion.start) / self.motion.stroke
+        load = self._loads_on_output.at(share, self._share(within), sense)
+        driving = gas.driving + load if self._loads_on_output.work > IDLE else gas.driving
         steady = self._rings + self._ring_surface * abs(gas.difference)
 
         # along the stroke line, without a rod
-        push = gas.force - sense * (resistance + steady)
+        push = gas.force + load - sense * steady
         push += self._parts * (self._g[0] - self.omega**2 * pose.curvature)
         if not isinstance(self.motion, RodMotion):
             M = self.motion.torque_of(push, phi)
             friction = -sense * steady
             kinks = (gas.difference,)
-            return Forces(
-                pose.slope, gas.force, gas.driving, friction, {}, M / self.motion.r, M, kinks
-            )
+            return Forces(pose.slope, gas.force, driving, friction, {}, M / self.motion.r, M, kinks)
 
         # on the crank pin
         side = mp.sign(mp.cospi(within / 180))
@@ -358,7 +358,7 @@ class TextbookCylinder:
         T = M / self.motion.r
         friction = -sense * (loads.drag + steady)
         kinks = (*loads.kinks, gas.difference)
-        return Forces(pose.slope, gas.force, gas.driving, friction, losses, T, M, kinks)
+        return Forces(pose.slope, gas.force, driving, friction, losses, T, M, kinks)
 
     def _gas(self, pose: Stance, lines: list[list[StrokeLine]]) -> GasForces:
         """Return the forces of the gas on all pistons."""
@@ -469,13 +469,15 @@ class TextbookCylinder:
 
     @property
     def is_driven(self) -> bool:
-        """Whether a piston is driven, or the output works against a resistance."""
-        return any(piston.work < -IDLE for piston in self.pistons) or any(self._resistance)
+        """Whether a piston is driven, or the output works against its loads."""
+        is_moved = self._loads_on_output.work < -IDLE
+        return bool(is_moved) or any(piston.work < -IDLE for piston in self.pistons)
 
     @property
     def drives(self) -> bool:
-        """Whether a piston drives."""
-        return any(piston.work > IDLE for piston in self.pistons)
+        """Whether a piston drives, or the loads on the output."""
+        is_driving = self._loads_on_output.work > IDLE
+        return bool(is_driving) or any(piston.work > IDLE for piston in self.pistons)
 
 
 def _radius(coefficient: float | None, diameter: float | None) -> Precise:

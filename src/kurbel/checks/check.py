@@ -9,6 +9,7 @@ from kurbel.checks.limits import (
     CheckEntry,
     JudgedFigure,
     compared_entries,
+    load_cases_of,
     margin_text,
     margins,
 )
@@ -391,7 +392,7 @@ def _delivery_entries(case: Case) -> Iterator[CheckEntry]:
 def _margin_entries(judged: Iterable[CheckEntry], name: str) -> Iterator[CheckEntry]:
     """Yield a line of heads and one for each limit: its smallest margin in the machine itself and in each load case."""
     table = margins(judged)
-    cases = list(dict.fromkeys(case for of_limit in table.values() for case in of_limit))
+    cases = load_cases_of(table)
     if not cases:
         return
     heads = [case or name for case in cases]

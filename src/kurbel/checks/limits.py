@@ -169,10 +169,14 @@ def _margin(quantity: Quantity, bound: Bound | Expected, value: float) -> float 
     if isinstance(bound, Expected):
         distance = min(value - bound.low, bound.high - value)
         edge = bound.low if value - bound.low < bound.high - value else bound.high
-        return distance / abs(edge) if edge else None
+        if not edge:
+            return None
+        return distance / abs(edge)
     magnitude = abs(value) if quantity.id.endswith("_residual") else value
     distance = magnitude - bound if quantity.bounded_below else bound - magnitude
-    return distance / abs(bound) if bound else None
+    if not bound:
+        return None
+    return distance / abs(bound)
 
 
 def margins(entries: Iterable[CheckEntry]) -> dict[str, dict[str, float]]:
@@ -184,8 +188,16 @@ def margins(entries: Iterable[CheckEntry]) -> dict[str, dict[str, float]]:
             continue
         of_limit = smallest.setdefault(str(entry.path[-1]), {})
         of_limit[figure.case] = min(figure.margin, of_limit.get(figure.case, figure.margin))
-    has_cases = any(case for of_limit in smallest.values() for case in of_limit)
+    has_cases = any(load_cases_of(smallest))
     return smallest if has_cases else {}
+
+
+def load_cases_of(table: Mapping[str, Mapping[str, float]]) -> list[str]:
+    """Return the load cases of a table of margins, in the order in which they first occur; '' is the machine itself."""
+    cases = dict[str, None]()
+    for of_limit in table.values():
+        cases |= dict.fromkeys(of_limit)
+    return list(cases)
 
 
 def margin_text(margin: float | None) -> str:
@@ -194,7 +206,9 @@ def margin_text(margin: float | None) -> str:
     >>> margin_text(0.0389), margin_text(-1.7), margin_text(None)
     ('+3.9 %', '-170.0 %', '–')
     """
-    return "–" if margin is None else f"{100 * margin:+.1f} %"
+    if margin is None:
+        return "–"
+    return f"{100 * margin:+.1f} %"
 
 
 def _compared_with_expected(
@@ -354,7 +368,9 @@ def _has_value(holder: Holder) -> bool:
 def name_of(case: Case) -> str:
     """Return the name of a load case, or of the machine itself."""
     machine = case.machine
-    return machine.origin.case if machine.origin else machine.name
+    if machine.origin:
+        return machine.origin.case
+    return machine.name
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name

@@ -355,7 +355,7 @@ part_options = stacked(
 units_option = click.option(
     "--units",
     type=click.Choice(["si", "metric", "technical", "imperial"]),
-    help="metric: mm, bar, kN, the default of tables and markdown; technical: mm, kgf, at, as the old books; "
+    help="metric: mm, bar, kN, the default of tables and workbooks; technical: mm, kgf, at, as the old books; "
     "imperial: in, lbf, psi; si: the default of csv and json.",
 )
 width_option = click.option(
@@ -383,7 +383,7 @@ number_options = stacked(
     click.option(
         "--digits",
         type=click.IntRange(1, 17),
-        help="Significant digits; if not given 4, and all in csv and json.",
+        help="Significant digits; if not given 4, and all in csv, json and xlsx.",
     ),
 )
 _look_options = stacked(
@@ -439,6 +439,7 @@ uncertainty_option = click.option(
 _SUFFIXES = {
     ".csv": "csv",
     ".json": "json",
+    ".xlsx": "xlsx",
     ".md": "markdown",
     ".markdown": "markdown",
     ".html": "html",
@@ -472,8 +473,13 @@ def format_of(
             f"which means {of_suffix}; change one of them."
         )
     written = requested or of_suffix or "table"
-    if comma and written in ("json", "parquet"):
-        raise click.UsageError(f"--decimal comma: {written} has the decimal point only.")
+    if comma and written == "json":
+        raise click.UsageError("--decimal comma: json has the decimal point only.")
+    if written == "xlsx":
+        refuse_contradictions(
+            (comma, "--decimal comma: Excel shows the decimal sign that it is set to."),
+            (file_name in (None, "-"), "A workbook is a file; give --output FILE.xlsx."),
+        )
     return written
 
 

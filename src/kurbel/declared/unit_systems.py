@@ -75,7 +75,9 @@ def convert(value: Any, kind: str, unit: str) -> Any:
     if multiplier != divisor:
         value = value / multiplier * divisor
     zero = zero_of(unit)
-    return value - zero if zero else value
+    if not zero:
+        return value
+    return value - zero
 
 
 def show(value: float, kind: str, figures: int = 6) -> str:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Binder
 from kurbel.designs.find import Solutions
 from kurbel.designs.find import find_solutions as find_in
@@ -88,8 +87,7 @@ def find(
     for key, (low, high) in vary.items():
         unit = ""
         if not (isinstance(low, str) and isinstance(high, str)):
-            (kind,) = Binder(origin, [key], texts_at(origin, [key])).kinds
-            unit = SI.get(kind, "")
+            (unit,) = Binder(origin, [key], texts_at(origin, [key])).units
         texts.append(f"{key}={low}:{high} {unit}".rstrip())
     return find_in(origin, texts, _as_list(wanted), least, greatest, _as_list(where))
 
@@ -97,7 +95,9 @@ def find(
 def _as_list(texts: Sequence[str] | str) -> list[str]:
     """Return one text or several as a list; an empty text is none."""
     if isinstance(texts, str):
-        return [texts] if texts else []
+        if not texts:
+            return []
+        return [texts]
     return list(texts)
 
 
@@ -121,9 +121,9 @@ def _inputs(binder: Binder, inputs: Mapping[str, object]) -> Iterator[Input]:
         raise UsageError(
             f"give as many values of every key, one or more of them; {lengths or 'there is none'}"
         )
-    for key, column, kind in zip(inputs, columns, binder.kinds):
+    for key, column, unit in zip(inputs, columns, binder.units):
         values = np.broadcast_to(column, count).tolist()
         if column.dtype.kind in "fiu":
-            yield Input(key, (), tuple(values), SI.get(kind, ""))
+            yield Input(key, (), tuple(values), unit)
         else:
             yield Input(key, tuple(map(str, values)))

@@ -165,9 +165,10 @@ class Solutions:
         self.varied = [_varied(span, kind) for span, kind in zip(spans, self.study.binder.kinds)]
 
         # the columns of a design: keys, then key values
-        key_heads = [
-            Head(varied.key, SI[varied.kind], varied.kind, input=True) for varied in self.varied
-        ]
+        key_heads = []
+        for varied, zero in zip(self.varied, self.study.binder.zeros):
+            head = Head(varied.key, SI[varied.kind], varied.kind, input=True, zero=zero)
+            key_heads.append(head)
         self.heads = tuple(self.study.heads("si"))
         heads = [*key_heads, *self.heads]
         self.wanted: list[Target] = []
@@ -224,10 +225,10 @@ class Solutions:
 
         if len(wanted_values) == 1:
             size = abs(float(wanted_values[0]))
-            places, jumps, ends = roots(lambda shares: differences(shares)[:, 0], size)
+            positions, jumps, ends = roots(lambda shares: differences(shares)[:, 0], size)
             if not self.depends(0):
                 return
-            shares = places[:, None]
+            shares = positions[:, None]
         else:
             shares = common_roots(differences)
             jumps = np.zeros(len(shares), dtype=bool)

@@ -82,11 +82,12 @@ class Sweep:
     def heads(self) -> tuple[Head, ...]:
         """The heads of the columns, with units that are chosen by the first values."""
         heads = []
-        for column, kind in zip(self._columns(range(1)), self._study.binder.kinds):
+        binder = self._study.binder
+        for column, kind, zero in zip(self._columns(range(1)), binder.kinds, binder.zeros):
             first = float(column.numbers[column.indices[0]])
             size = first if math.isfinite(first) else 0.0
             unit = shown_unit(kind, self.spec.system, size) if kind else ""
-            heads.append(Head(column.input.key, unit, kind, input=True))
+            heads.append(Head(column.input.key, unit, kind, input=True, zero=zero))
         return (*heads, *self._study.heads(self.spec.system))
 
     @cached_property
@@ -122,14 +123,6 @@ class Sweep:
                 name = f"{owners}.{name.rpartition('.')[2]}"
             shown.append((name, column))
         return shown
-
-    def types(self) -> list[str]:
-        """Return the type of each column: `number`, `list`, or `text`, also where words occur among numbers."""
-        types = ["list" if head.listed else "number" for head in self.heads]
-        for index, numbers in enumerate(self._numbers):
-            if not np.isfinite(numbers).all():
-                types[index] = "text"
-        return types
 
     def blocks(self, rows: range) -> Iterator[range]:
         """Yield the blocks of rows, counted from 0, that have any of these rows.

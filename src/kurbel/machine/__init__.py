@@ -493,7 +493,9 @@ class Machine(Record):
     def cycle_of_piston(self, cylinder: Cylinder, number: int) -> str:
         """Return the working cycle of a piston of a cylinder; number: 0 for its own, then the tandem ones."""
         cycle = self.cycle_of(cylinder)
-        return cylinder.pistons[number].cycle_beside(cycle) if number else cycle
+        if not number:
+            return cycle
+        return cylinder.pistons[number].cycle_beside(cycle)
 
     def piston_names(self, cylinder: Cylinder) -> tuple[str, ...]:
         """Return the names of the pistons with an indicator, as in limits, if a rod has several: `pump`.

@@ -223,7 +223,9 @@ class Compressor(ChamberCard, Record):
 
     def loaded(self) -> "Compressor":
         """Return the card with its valves at work."""
-        return replace(self, unloaded=False) if self.unloaded else self
+        if not self.unloaded:
+            return self
+        return replace(self, unloaded=False)
 
     def rules(self) -> Iterator[Rule]:
         yield _order("delivery", self.delivery, "suction", self.suction)
@@ -231,7 +233,9 @@ class Compressor(ChamberCard, Record):
     @property
     def of_expansion(self) -> float:
         """Exponent of the expansion of what is left in the clearance."""
-        return self.exponent if self.expansion_exponent is None else self.expansion_exponent
+        if self.expansion_exponent is None:
+            return self.exponent
+        return self.expansion_exponent
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a delivery that is never reached."""
@@ -316,12 +320,16 @@ class _Engine(ChamberCard, Record):
     @property
     def cycles(self) -> tuple[str, ...]:
         """Both; with an exhaust stroke the four-stroke cycle alone."""
-        return ("two-stroke", "four-stroke") if self.exhaust is None else ("four-stroke",)
+        if self.exhaust is None:
+            return ("two-stroke", "four-stroke")
+        return ("four-stroke",)
 
     @property
     def back_pressure(self) -> float:
         """Pressure in Pa of the exhaust stroke, about which a diagram factor lowers the card."""
-        return self.intake if self.exhaust is None else self.exhaust
+        if self.exhaust is None:
+            return self.intake
+        return self.exhaust
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -49,7 +49,9 @@ class Gas(Record):
     @property
     def mass_of_mole(self) -> float | None:
         """Its molar mass in kg/mol."""
-        return None if self.gas_constant is None else GAS_CONSTANT / self.gas_constant
+        if self.gas_constant is None:
+            return None
+        return GAS_CONSTANT / self.gas_constant
 
 
 class Liquid(Record):

@@ -134,7 +134,9 @@ class Rim(Record):
 def _rim_and_inertia(values: ValuesByKey) -> dict[str, object]:
     """Return what a rim determines of its flywheel: the moment of inertia if its sizes are given."""
     rim = values["rim"]
-    return {"rim": rim, "inertia": rim.inertia} if rim.sized_by else {"rim": rim}
+    if rim.sized_by:
+        return {"rim": rim, "inertia": rim.inertia}
+    return {"rim": rim}
 
 
 class Flywheel(Record):
@@ -204,7 +206,9 @@ class Flywheel(Record):
 
 def _cycle_name(cycle: str, turns: int) -> str:
     """Return the name of a working cycle; '' where the machine repeats after other turns than those of its cycle."""
-    return f"a {cycle} cycle" if turns == CYCLES[cycle] else ""
+    if turns != CYCLES[cycle]:
+        return ""
+    return f"a {cycle} cycle"
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,7 +55,9 @@ class Link(NamedTuple):
 
 def _force_on_knuckle(state: Any) -> Any:
     force = state.knuckle_force
-    return None if force is None else np.abs(force)
+    if force is None:
+        return None
+    return np.abs(force)
 
 
 LINK_OFFERS: tuple[Offer, ...] = (

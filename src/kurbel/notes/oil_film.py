@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from kurbel.declared.unit_systems import show
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.bearings import Bearing
+from kurbel.solver.chapters.bearing import Bearing
 from kurbel.solver.chapters.oil_film import FilmShape
 
 _THINNEST = {"crank_pin": 2.0e-6, "journals": 2.5e-6}

@@ -78,7 +78,9 @@ def machine_notes(case: Case, of_forces: bool = False) -> tuple[Note, ...]:
 
 def _has_force(cylinder: Cylinder) -> bool:
     """Return whether something acts on the mechanism of a cylinder."""
-    return bool(cylinder.pistons or cylinder.masses or cylinder.ram_force or cylinder.moment)
+    loads = (cylinder.ram_force, cylinder.moment, cylinder.force)
+    has_load = any(load is not None for load in loads)
+    return bool(cylinder.pistons or cylinder.masses or has_load)
 
 
 def as_far_as_solved(warnings: Iterable[str], command: str) -> list[str]:

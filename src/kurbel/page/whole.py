@@ -75,7 +75,7 @@ def _drawn(case: Case, kind: PictureKind, system: str, name: str = "") -> list[P
 @np.errstate(all="ignore")  # what overflows is refused by name
 def whole_report(
     case: Case,
-    given: KeyTexts,
+    key_texts: KeyTexts,
     system: str,
     step: float,
     progress: OnStep,
@@ -122,7 +122,7 @@ def whole_report(
         Section("energy", "Energy balance", tuple(_energy(case, system))),
         Section("tables", "Over the crank angle", tuple(tables)),
         Section("left-out", "Left out", tuple(_left_out(left_out))),
-        Section("input", "Input as understood", tuple(_input(case, given))),
+        Section("input", "Input as understood", tuple(_input(case, key_texts))),
     ]
     return Document(
         machine.name,
@@ -162,11 +162,11 @@ def _without_motion(report: Report, case: Case) -> Report:
     return report.changed(of_forces)
 
 
-def _input(case: Case, given: KeyTexts) -> Iterator[Grid]:
+def _input(case: Case, key_texts: KeyTexts) -> Iterator[Grid]:
     """Yield the keys of the file with their meanings, and the results of a check of the machine."""
-    if given:
-        places = places_of(given)
-        rows = tuple((path, value, meaning(path, places)) for path, value in given)
+    if key_texts:
+        keys_by_path = places_of(key_texts)
+        rows = tuple((path, value, meaning(path, keys_by_path)) for path, value in key_texts)
         yield Grid("Given", ("Key", "Value", "Meaning"), rows)
     for part in checked(case).shown_once:
         entries = [entry for entry in part.entries if entry.severity != "warning"]
@@ -219,6 +219,7 @@ def _energy_terms(forces: CylinderForces) -> Iterator[tuple[str, float]]:
         yield f"Friction {joint}", -(friction.get(name) or 0.0)
     yield "Friction given as a force", -(friction.get("constant") or 0.0)
     yield "What the output works against", forces.resistance_work
+    yield "Load on the output", forces.load_work
 
 
 # two machines side by side
@@ -226,13 +227,13 @@ def _energy_terms(forces: CylinderForces) -> Iterator[tuple[str, float]]:
 
 @np.errstate(all="ignore")
 def side_by_side(
-    cases: Sequence[Case], given: Sequence[KeyTexts], system: str, progress: OnStep
+    cases: Sequence[Case], key_texts: Sequence[KeyTexts], system: str, progress: OnStep
 ) -> Document:
     """Return the report on two machines: input that differs, key values with their differences, pictures in pairs."""
     names = [case.machine.name for case in cases]
     if names[0] == names[1]:
         names = [f"{names[0]} (A)", f"{names[1]} (B)"]
-    input_items = tuple(_differing_input(cases, given, names))
+    input_items = tuple(_differing_input(cases, key_texts, names))
     sections = [Section("input", "What was given differently", input_items)]
     for command in REPORTS:
         progress(command.title.lower())
@@ -250,14 +251,14 @@ def side_by_side(
 
 
 def _differing_input(
-    cases: Sequence[Case], given: Sequence[KeyTexts], names: Sequence[str]
+    cases: Sequence[Case], key_texts: Sequence[KeyTexts], names: Sequence[str]
 ) -> Iterator[SectionItem]:
     """Yield which machine is that of which file, and the keys with other values in both."""
     files = [case.machine.origin.name for case in cases if case.machine.origin]
     if len(files) == len(names):
         texts = [f"{name} is that of {file}" for name, file in zip(names, files)]
         yield "; ".join(texts) + "."
-    left, right = map(dict, given)
+    left, right = map(dict, key_texts)
     rows = []
     for key in dict.fromkeys((*left, *right)):
         if left.get(key) != right.get(key):
@@ -288,7 +289,9 @@ def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Ite
     yield from _pairs(cases, "", names, system)
 
     # the same facts of both, in the order of the first
-    ids = dict.fromkeys(id for case in cases for id in facts_of(case))
+    ids = dict[str, None]()
+    for case in cases:
+        ids |= dict.fromkeys(facts_of(case))
     titles: dict[Quantity, str] = {}
     numbers = []
     for case in cases:
@@ -375,4 +378,6 @@ def _difference(first: float | None, second: float | None) -> str:
     percent = 100 * (second - first) / abs(first)
     if not percent:
         return "0 %"
-    return f"{percent:+.2f} %" if abs(percent) < 100 else f"{percent:+.0f} %"
+    if abs(percent) < 100:
+        return f"{percent:+.2f} %"
+    return f"{percent:+.0f} %"

@@ -271,7 +271,7 @@ def _straight(mechanism: Mechanism, angle: CrankAngle) -> tuple[complex, complex
 
 def _panel(
     kind: str,
-    places: dict[str, complex],
+    named_points: dict[str, complex],
     values: dict[str, float],
     **lines: Sequence[Sequence[complex] | ComplexArray],
 ) -> Panel:
@@ -282,7 +282,7 @@ def _panel(
         for points in of_kind:
             curves.append(curve(line_kind, *points, look=look))
     marks = []
-    for name, point in places.items():
+    for name, point in named_points.items():
         marks.append(Mark(point.real, point.imag, PageFigure(Words(name), values.get(name))))
     axis = Axis(NO_NAME, kind)
     return Panel(axis, axis, tuple(curves), marks=tuple(marks), equal=True, plain=True)

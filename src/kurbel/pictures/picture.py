@@ -82,7 +82,9 @@ class Curve(NamedTuple):
 
     def at_moment(self, moment: int) -> "Curve":
         """Return the curve at one moment of its movement."""
-        return self if self.x.ndim == 1 else self._replace(x=self.x[moment], y=self.y[moment])
+        if self.x.ndim == 1:
+            return self
+        return self._replace(x=self.x[moment], y=self.y[moment])
 
 
 class PageFigure(NamedTuple):
@@ -268,7 +270,9 @@ class Picture(NamedTuple):
     def heading(self) -> str:
         """The line above the picture."""
         title = f"{self.title}: {self.of}" if self.of else self.title
-        return f"{self.machine}. {title}" if self.machine else title
+        if not self.machine:
+            return title
+        return f"{self.machine}. {title}"
 
 
 # a long report

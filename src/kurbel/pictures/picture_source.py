@@ -319,9 +319,9 @@ class Source:
         return Panel(axis, axis, curves, marks=tuple(marks), equal=True, title=title)
 
 
-def curve(kind: str, *places: complex, name: Words = NO_NAME, look: int | None = None) -> Curve:
-    """Return a line through places x + iy."""
-    points = np.array(places)
+def curve(kind: str, *corners: complex, name: Words = NO_NAME, look: int | None = None) -> Curve:
+    """Return a line through corners x + iy."""
+    points = np.array(corners)
     return Curve(name, points.real, points.imag, kind, look)
 
 

@@ -152,12 +152,12 @@ def piston_force_of_crank(source: Source) -> Iterator[Panel]:
     has_losses = bool(drive.machine.efficiency != 1)
     driving = Words("η P_driving", "eta P_driving") if has_losses else Words("P_driving")
     lines: list[CurveFormula] = [
-        (driving, lambda state: drive.machine.efficiency * state.P_driving),
+        (driving, lambda state: drive.machine.efficiency * state.driving_force),
         (Words("−P_driven"), lambda state: -driven_force(state)),
     ]
     if source.having("P_inertia"):
         masses = " − P_b − P_w" if source.having("P_weight") else " − P_b"
-        lines.append((Words(f"−P_driven{masses}"), lambda state: state.P_driving - state.P))
+        lines.append((Words(f"−P_driven{masses}"), lambda state: state.driving_force - state.P))
     for breaks, title in _strokes(source):
         yield source.panel(lines, "x", like="P", shaded=True, zero=True, breaks=breaks, title=title)
 

@@ -214,7 +214,9 @@ def _in_text(letter: str) -> str:
     if letter in _SPECIAL:
         return _SPECIAL[letter]
     is_formula = len(letter) > 1 or letter in _MATH
-    return f"${_formula(letter)}$" if is_formula else letter
+    if not is_formula:
+        return letter
+    return f"${_formula(letter)}$"
 
 
 def _formula(letter: str) -> str:
@@ -224,7 +226,9 @@ def _formula(letter: str) -> str:
     if base in _MATH:
         command = _MATH[base]
         written = command if command[0] in "-^_" else f"\\{command}"
-    return f"\\{_DOTS[dots]}{{{written}}}" if dots else written
+    if not dots:
+        return written
+    return f"\\{_DOTS[dots]}{{{written}}}"
 
 
 # the report, element by element

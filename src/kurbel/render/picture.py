@@ -36,7 +36,9 @@ def axis_text(axis: Axis, look: Look) -> str:
     """Return the title of an axis: words, symbol, unit."""
     words, unit = look.text(axis.name.words), look.unit(axis.unit)
     name = f"{words[:1].upper()}{words[1:]} {symbol(axis.name, look)}".strip()
-    return f"{name} in {unit}" if name and unit else name or unit
+    if name and unit:
+        return f"{name} in {unit}"
+    return name or unit
 
 
 def legend_text(words: Words, look: Look) -> str:
@@ -52,7 +54,9 @@ def figure_text(figure: PageFigure, look: Look) -> str:
         return f"{name} {at}".strip()
     value, unit = look.measured(figure.value, figure.unit)
     text = f"{name} {look.fine(value)} {unit}".strip()
-    return f"{text}, {at}" if at else text
+    if not at:
+        return text
+    return f"{text}, {at}"
 
 
 def picture_text(picture: Picture, look: Look) -> str:
@@ -64,7 +68,9 @@ def picture_text(picture: Picture, look: Look) -> str:
         figures += [shade.figure for shade in panel.shades if shade.figure]
     texts = "; ".join(dict.fromkeys(figure_text(figure, look) for figure in figures))
     sentence = f"{look.text(picture.heading)}. {look.text(picture.text)}"
-    return f"{sentence} {texts}." if texts else sentence
+    if not texts:
+        return sentence
+    return f"{sentence} {texts}."
 
 
 # scales
@@ -112,7 +118,9 @@ def axis_scale(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisSc
         if low != axis.low:
             low -= _AIR * height
         high += _AIR * height
-    return AxisScale(axis, high, low) if axis.falling else AxisScale(axis, low, high)
+    if axis.falling:
+        return AxisScale(axis, high, low)
+    return AxisScale(axis, low, high)
 
 
 def ticks(scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:

@@ -161,7 +161,9 @@ def _shown(cell: FactValue, head: str, look: Look) -> str:
         return f"{value} {_powers(unit)}".strip()
     if head == "Unit":
         return look.unit(cell)
-    return _powers(look.number(cell)) if head == "Bound" else look.sentence(cell)
+    if head == "Bound":
+        return _powers(look.number(cell))
+    return look.sentence(cell)
 
 
 def _powers(unit: str) -> str:

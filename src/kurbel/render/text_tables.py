@@ -1,7 +1,7 @@
 """First pass of every printed format: the values of a report as tables of text, with their digits, units and marks."""
 
 from collections.abc import Collection, Iterator, Sequence
-from itertools import groupby
+from itertools import chain, groupby
 from typing import NamedTuple
 
 from kurbel.quantity import NOISE_POWER
@@ -60,7 +60,8 @@ def sheets(report: Report, look: Look) -> Iterator[tuple[list[TextColumn], Bands
     parts = [part for part in report.all_parts if part.columns]
     for _, run in groupby(parts, lambda part: part.columns[0].values):
         same_angles = list(run)
-        has_marks = any(column.marked for part in same_angles for column in part.columns)
+        columns = chain.from_iterable(part.columns for part in same_angles)
+        has_marks = any(column.marked for column in columns)
         pad = " " if has_marks else ""
 
         phi = same_angles[0].columns[0]

@@ -267,4 +267,6 @@ def _direction(circle: complex) -> float | None:
     if not circle:
         return None
     degrees = math.degrees(cmath.phase(circle))
-    return degrees if degrees > _NOTHING - 180 else degrees + 360
+    if degrees > _NOTHING - 180:
+        return degrees
+    return degrees + 360

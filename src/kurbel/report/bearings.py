@@ -11,7 +11,7 @@ from kurbel.notes.left_out import (
 from kurbel.notes.machine_results import bearing_warnings, rods_on_pin
 from kurbel.notes.warnings import as_far_as_solved, of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.bearings import Bearing
+from kurbel.solver.chapters.bearing import Bearing
 from kurbel.tables.frame import Functions, Subject
 from kurbel.tables.tables import together
 

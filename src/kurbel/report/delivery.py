@@ -39,7 +39,7 @@ def _delivering(case: Case) -> list[Subject]:
     for piston in delivery.pistons:
         subjects.append(Subject(piston.name, piston, piston.at))
     pump = delivery.pump
-    whole = Subject(
+    machine_subject = Subject(
         "whole machine",
         pump,
         pump.at if pump else None,
@@ -47,7 +47,7 @@ def _delivering(case: Case) -> list[Subject]:
         warnings=chain(of_machine(case), delivery_warnings(delivery)),
         whole=True,
     )
-    return [*subjects, whole]
+    return [*subjects, machine_subject]
 
 
 def _ends_tables(stage: CompressorStage) -> Iterator[Places]:

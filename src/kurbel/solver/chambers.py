@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.arithmetic import spread
 from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
-from kurbel.solver.gas import PistonGas, Pressure
+from kurbel.solver.gas import HeatOfEnd, PistonGas, Pressure
 from kurbel.solver.motion import MotionColumns
 
 _BOTH = ("motion", "forces")
@@ -47,12 +47,21 @@ def _own_rise(state: Chambers, end: str) -> Array | None:
     return chamber.rise(state.phi) if chamber and chamber.traced else None
 
 
+def _own_heat(state: Chambers, column: Callable[[HeatOfEnd, Array], Array]) -> Array | None:
+    """Return a column of the heat release; None where the cylinder's own piston has none."""
+    gas = state.drive.own_gas
+    heat = gas.heat if gas else None
+    return None if heat is None else column(heat, state.phi)
+
+
 def _opening(state: Chambers, end: str) -> Number | None:
     valve, w = state.drive.cylinder.valve, state.valve_displacement
     if valve is None or w is None:
         return None
     head, crank = valve.ends
-    return head.opening_at(w) if end == "head" else crank.opening_at(-w)
+    if end == "head":
+        return head.opening_at(w)
+    return crank.opening_at(-w)
 
 
 class Chambers(MotionColumns):
@@ -125,6 +134,20 @@ class Chambers(MotionColumns):
         of=_own_rise,
         on_request=("forces",),
     )
+    dQ = value(
+        "dQ/dφ",
+        "energy_rise",
+        "Heat released per degree of crank angle, of a trace over 1 deg, less what the walls take",
+        lambda state: _own_heat(state, HeatOfEnd.rate),
+        on_request=("forces",),
+    )
+    x_b = value(
+        "x_b",
+        "ratio",
+        "Burnt share: heat released so far over all that is released",
+        lambda state: _own_heat(state, HeatOfEnd.burnt),
+        on_request=("forces",),
+    )
     P_gas = value(
         "P_gas",
         "force",
@@ -147,7 +170,9 @@ class Chambers(MotionColumns):
     def valve_displacement(self) -> Number | None:
         """Displacement w of the valve in m; None without one."""
         valve = self.drive.cylinder.valve
-        return valve.displacement(self.angle) if valve else None
+        if not valve:
+            return None
+        return valve.displacement(self.angle)
 
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""
@@ -158,7 +183,7 @@ class Chambers(MotionColumns):
 
     def force_on(self, gas: PistonGas, mean_area: bool = False) -> Array:
         """Return the gas force p_H A_H − p_C A_C in N on a piston (R 296); mean_area: both ½(A_H + A_C) (R 297)."""
-        head, crank = (spread(one, self.drive.index) for one in gas.areas)
+        head, crank = (spread(area, self.drive.index) for area in gas.areas)
         if mean_area:
             head = crank = (head + crank) / 2
         sense = -1.0 if gas.turned else 1.0
@@ -175,11 +200,15 @@ class Chambers(MotionColumns):
 
     def force_of(self, shares: Sequence[Truth]) -> Array | None:
         """Return the gas force in N on those pistons whose share is true, in each machine; None without any."""
-        each = zip(self.piston_forces, shares)
+        forces_and_shares = zip(self.piston_forces, shares)
         counted = [
-            force * spread(share, self.drive.index) for force, share in each if share is not False
+            force * spread(share, self.drive.index)
+            for force, share in forces_and_shares
+            if share is not False
         ]
-        return sum(counted) if counted else None
+        if not counted:
+            return None
+        return sum(counted)
 
     P_driving = value(
         "P_gas+",

@@ -114,7 +114,9 @@ class SampledCylinder:
     def sampled(self, column: str) -> Array | None:
         """Return a column at the nodes of the pieces, (nodes, pieces); None for one that is left out."""
         values = self.samples[column]
-        return None if values is None else self.pieces.filled(values)
+        if values is None:
+            return None
+        return self.pieces.filled(values)
 
     def extremes_over(self, columns: Mapping[str, Number | None]) -> dict[str, Extremes]:
         """Return the extremes in SI of columns of `samples` by id, without those that are None."""
@@ -128,7 +130,9 @@ class SampledCylinder:
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         values = self.sampled(column)
-        return None if values is None else where_is(self.pieces, values, value)
+        if values is None:
+            return None
+        return where_is(self.pieces, values, value)
 
 
 def _state_on(drive: Drive, pieces: Pieces) -> State:
@@ -193,9 +197,9 @@ def _before_friction(state: State) -> list[Array]:
     return [state.filled(column) for column in columns]
 
 
-def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
+def _restored(drive: Drive, pieces: Pieces, samples: Samples) -> State:
     """Return the state on pieces from the values of `_before_friction` there, each (nodes, pieces)."""
-    sin, cos, slope, curvature, *rest = known
+    sin, cos, slope, curvature, *rest = samples
     pistons = len(rest) - len(drive.gas)
     angle = CrankAngle(pieces.degrees, sin, cos, (rest[0], rest[1]) if pistons else None)
     state = State(drive.taken(pieces.machine), angle, pieces.middle)
@@ -229,7 +233,9 @@ def _sense_with_pins(state: State) -> list[Number]:
 
 def _sense(state: State) -> Number:
     """Return the force in N whose sign decides which side of a guide, or of a Scotch yoke, is loaded."""
-    return state.guide_sense if state.rod_angle else state.after_steady_friction
+    if state.rod_angle:
+        return state.guide_sense
+    return state.after_steady_friction
 
 
 def _refuse_locking(state: State, pieces: Pieces) -> None:

@@ -23,6 +23,7 @@ from kurbel.solver.motion import every_dead_centre
 
 if TYPE_CHECKING:
     from kurbel.mechanisms.link_rod import LinkedPiston
+    from kurbel.solver.output_load import OutputLoad
     from kurbel.solver.shaft import SupportedShaft
 
 _IDLE = 1e-4
@@ -74,8 +75,8 @@ class Drive:
     weight: of the reciprocating masses along the stroke line and on the guide, None where it is left out; down: cos of
     the inclination i (180° − i if the machine turns under), None without one: if positive, N > 0 loads the lower guide.
 
-    resistance: load on the output, a force, or a moment on what only swings; resistance_work: its work per cycle,
-    negative; path: distance per cycle of what slides, there and back.
+    resistance: load on the output against its motion, a force, or a moment on what only swings; resistance_work: its
+    work per cycle, negative but where it helps more; path: distance per cycle of what slides, there and back.
 
     crosshead_friction: f, 0 without one; rubs: whether it is not 0; guide_area: of the shoe, None where not given;
     yoke_friction: f of the block and of the guides of a Scotch yoke, 0 where not given; yoke_rubs: whether either is
@@ -102,7 +103,8 @@ class Drive:
         self._take_weight()
         self._take_resistance()
         self.has_gas = any(piston.indicator for piston in cylinder.pistons)
-        self.has_force = bool(self.has_gas or self.has_inertia or self.weight or self.resistance)
+        has_load = self.resistance is not None or cylinder.force is not None
+        self.has_force = bool(self.has_gas or self.has_inertia or self.weight or has_load)
         self._take_friction()
 
     def _take_masses(self) -> None:
@@ -188,7 +190,9 @@ class Drive:
             return self
         other = Drive(taken(self.machine, index), taken(self.cylinder, index), self.count, index)
         other.gas = self.gas
+        other.load = self.load
         other.driving, other.driven, other.pumping = self.driving, self.driven, self.pumping
+        other.load_drives = self.load_drives
         return other
 
     @cached_property
@@ -208,6 +212,8 @@ class Drive:
         bends = [Angles(np.repeat(np.arange(count), centres.shape[1]), centres.ravel())]
         for gas in self.gas:
             bends += gas.starts
+        if self.load is not None:
+            bends += self.load.starts
         # the guide of a master rod feels where something bends or jumps in its links
         for link in self.links:
             ends = link.pieces.ends
@@ -222,7 +228,9 @@ class Drive:
     def centrifugal(self, mass: Number) -> Number:
         """Return the centrifugal force m R ω² in N of a mass in kg at the crank pin; 0 where no speed is given."""
         # a float squared by ** raises where the product is infinite
-        return 0.0 if self.omega is None else mass * self.mechanism.crank * self.omega * self.omega
+        if self.omega is None:
+            return 0.0
+        return mass * self.mechanism.crank * self.omega * self.omega
 
     def weight_of(self, mass: Number) -> tuple[Number, Number]:
         """Return the weight in N of a mass in kg along the stroke line and on the guide; 0 where it is left out."""
@@ -267,16 +275,39 @@ class Drive:
         """Of the pistons that have an indicator, whether each is driven: its indicated work is negative."""
         return tuple(gas.work < -_IDLE * gas.swept_volume for gas in self.gas)
 
+    # the load on the output
+
+    @cached_property
+    def load(self) -> OutputLoad | None:
+        """The load `force` on what slides or swings; None without one."""
+        force = self.cylinder.force
+        if force is None:
+            return None
+        from kurbel.solver.output_load import OutputLoad
+
+        return OutputLoad(force, self.mechanism, self.revolutions, self.count)
+
+    @property
+    def output_work(self) -> Number:
+        """Work in J per cycle of all loads on the output, negative where the machine moves them."""
+        work: Number = 0.0 if self.resistance_work is None else self.resistance_work
+        return work if self.load is None else work + self.load.work
+
+    @cached_property
+    def load_drives(self) -> Truth:
+        """Whether the loads on the output do more work on it than they take, as a load that is lowered."""
+        drives: Truth = self.output_work > 0
+        return drives
+
     @property
     def drives(self) -> Truth:
-        """Whether any piston drives."""
-        return any_of(self.driving)
+        """Whether any piston drives, or the load on the output."""
+        return any_of((self.load_drives, *self.driving))
 
     @cached_property
     def driven(self) -> Truth:
-        """Whether a piston is driven, its indicated work being negative, or the output works against a resistance."""
-        resisted = self.resistance_work is not None and self.resistance_work != 0
-        return any_of((resisted, *self.pumping))
+        """Whether a piston is driven, its indicated work being negative, or the output works against a load."""
+        return any_of((self.output_work < 0, *self.pumping))
 
     # friction
 
@@ -322,7 +353,9 @@ def _or_none_at_all(coefficient: Number | None) -> Number:
 
 def _moment_arm(f: Number | None, diameter: Number | None) -> Number:
     """Return f d/2 in m, the moment of friction over the load; 0 where one of both is not given."""
-    return 0.0 if f is None or diameter is None else f * diameter / 2
+    if f is None or diameter is None:
+        return 0.0
+    return f * diameter / 2
 
 
 def any_of(conditions: Iterable[Truth]) -> Truth:

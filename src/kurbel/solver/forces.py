@@ -37,6 +37,7 @@ from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
 
 if TYPE_CHECKING:
+    from kurbel.solver.heat_release import HeatRelease
     from kurbel.solver.indicated import Indicated
     from kurbel.solver.valve import ValveGear
 
@@ -45,6 +46,12 @@ def _indicated() -> type[Indicated]:
     from kurbel.solver.indicated import Indicated
 
     return Indicated
+
+
+def _heat_release() -> type[HeatRelease]:
+    from kurbel.solver.heat_release import HeatRelease
+
+    return HeatRelease
 
 
 def _valve_gear() -> type[ValveGear]:
@@ -135,7 +142,8 @@ class CylinderForces(SampledCylinder, Results):
     def rows(self) -> Rows:
         """The rows that a machine with this mechanism may have, its pressures counted as in the machine file."""
         mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
-        of_ram = not cylinder.pistons and bool(cylinder.ram_force or mechanism.quick_return)
+        is_loaded = cylinder.ram_force is not None or cylinder.force is not None
+        of_ram = not cylinder.pistons and bool(is_loaded or mechanism.quick_return)
         absolute = bool(gas and gas.absolute)
         return _rows(
             mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, absolute, mechanism.guided, self.closed
@@ -165,7 +173,9 @@ class CylinderForces(SampledCylinder, Results):
     def valve_gear(self) -> ValveGear | None:
         """What the valve does."""
         cylinder = self.drive.cylinder
-        return _valve_gear()(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
+        if not cylinder.valve:
+            return None
+        return _valve_gear()(cylinder.valve, cylinder, self.motion)
 
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")
@@ -249,6 +259,11 @@ class CylinderForces(SampledCylinder, Results):
     resistance_work = value(
         "A_r", "energy", "Work per cycle of the resistance at the ram or rocker, negative"
     )
+    load_work = value(
+        "A_L",
+        "energy",
+        "Work per cycle of the load `force` on the output, negative where the machine moves it",
+    )
     power = value("N_i", "power", "Indicated power")
     mean_pressure = value("p_i", "pressure", "Mean indicated pressure of the cylinder's own piston")
 
@@ -264,6 +279,15 @@ class CylinderForces(SampledCylinder, Results):
         """Key values of the traces of the cylinder's own piston."""
         gas = self.drive.own_gas
         return _indicated()(gas) if gas and gas.has_trace else None
+
+    @part(
+        _heat_release,
+        there=lambda forces: bool(forces.drive.own_gas and forces.drive.own_gas.releases_heat),
+    )
+    def heat_release(self) -> HeatRelease | None:
+        """Key values of the heat release over the cylinder's own piston."""
+        gas = self.drive.own_gas
+        return _heat_release()(gas) if gas and gas.releases_heat else None
 
     @part(Brake)
     def brake(self) -> Brake | None:
@@ -407,7 +431,9 @@ class CylinderForces(SampledCylinder, Results):
             values = self.sampled(name)
             if values is not None:
                 loads[name] = values
-        return RodLoads(self.drive, self.pieces, loads) if loads else None
+        if not loads:
+            return None
+        return RodLoads(self.drive, self.pieces, loads)
 
     @shared
     def answers(self) -> dict[str, object]:
@@ -416,6 +442,7 @@ class CylinderForces(SampledCylinder, Results):
         answers = dict[str, object]()
         answers["m"] = drive.mass if drive.cylinder.masses else None
         answers["resistance_work"] = drive.resistance_work
+        answers["load_work"] = drive.load and drive.load.work
         if pistons:
             answers["A_head"] = pistons[0].head_area
             answers["A_crank"] = pistons[0].crank_area
@@ -575,9 +602,9 @@ class CylinderForces(SampledCylinder, Results):
         """Work in J per cycle that reaches the shaft: indicated, less friction and that of the load on the output."""
         if not self.drive.has_force:
             return None
-        terms = (self.work, self.friction_work, self.resistance_work)
-        work, lost, resisted = (0.0 if term is None else term for term in terms)
-        return total(work, -lost, resisted)
+        work = 0.0 if self.work is None else self.work
+        lost = 0.0 if self.friction_work is None else self.friction_work
+        return total(work, -lost, self.drive.output_work)
 
     @shared
     def friction_works(self) -> dict[str, Any]:
@@ -681,4 +708,6 @@ def _rows(
         rows = rows.changed(Quantity.of_ram)
     elif absolute:
         rows = rows.changed(Quantity.absolute)
-    return rows if guided else rows.changed(Quantity.without_guide)
+    if guided:
+        return rows
+    return rows.changed(Quantity.without_guide)

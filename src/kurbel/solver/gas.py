@@ -17,7 +17,7 @@ import math
 from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, ClassVar, Literal, Union
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, Union
 
 import numpy as np
 
@@ -36,6 +36,7 @@ from kurbel.solver.figures import result
 
 if TYPE_CHECKING:
     from kurbel.machine.ideal_cards import IdealCard
+    from kurbel.traces.heat import Released
     from kurbel.traces.pressure import TracePressure
 
 _NO_WIDTH = 1e-10
@@ -153,14 +154,30 @@ def _level_lines(rectangle: Rectangle, cycle: float, base: float) -> Iterator[Pr
 # over the crank angle
 
 
+class HeatOfEnd(NamedTuple):
+    """The heat that is released in one chamber, and the chamber."""
+
+    released: Released
+    setting: Setting
+
+    def burnt(self, degrees: Array) -> Array:
+        """Return the burnt share x_b at crank angles in degrees."""
+        return self.released.burnt_at(self.setting.after_dead_centre(degrees))
+
+    def rate(self, degrees: Array) -> Array:
+        """Return the heat in J that is released per degree at crank angles in degrees."""
+        return self.released.rate_at(self.setting.after_dead_centre(degrees))
+
+
 class CardPressure:
     """Gauge pressure in one chamber from a process over the stroke, or in those of many machines.
 
-    traced: it is no trace. mirrored: the pressure at the other end, which has the same process. steep: whether a
+    traced: it is no trace; releases: nor has it a heat release. mirrored: the pressure at the other end, which has the same process. steep: whether a
     line is so steep that the rounding of z counts; starts: where lines begin.
     """
 
     traced: ClassVar[Literal[False]] = False
+    releases: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -196,11 +213,17 @@ class CardPressure:
         machine = np.repeat(np.arange(machines), len(z)) if alike else self._machine
         self.starts = Angles(machine, np.tile(self._begins, machines))
 
+    def released(self, area: Number) -> None:
+        """Return the heat released over a piston of this area: none."""
+        return None
+
     @property
     def area(self) -> Number:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
         areas = np.array([process.area for process in self._processes])
-        return float(areas[0]) if len(areas) == 1 else areas[self._which]
+        if len(areas) == 1:
+            return float(areas[0])
+        return areas[self._which]
 
     @cached_property
     def highest(self) -> Extreme:
@@ -407,6 +430,7 @@ class PistonGas:
                 self.ends.append((pressure, area))
         self._traces = [(end, area) for end, area in self.ends if end.traced]
         self.has_trace = bool(self._traces)
+        self.releases_heat = any(end.releases for end, _ in self.ends)
         self.swept_volume: Number = sum(area for _, area in self.ends) * self.stroke
         self.starts = []
         for turn in cycle * np.arange(repeats):
@@ -437,6 +461,15 @@ class PistonGas:
         work = sum(area * end.area for end, area in self._traces)
         by_angle = sum(area * end.area_by_angle for end, area in self._traces)
         return distance * work, distance * by_angle
+
+    @cached_property
+    def heat(self) -> HeatOfEnd | None:
+        """The heat release of the first end that has one."""
+        for end, area in self.ends:
+            released = end.released(area)
+            if released is not None:
+                return HeatOfEnd(released, end.setting)
+        return None
 
     @property
     def noise(self) -> float:

@@ -81,7 +81,8 @@ def residual(cylinder: SampledCylinder) -> float | None:
 
     # piston, rod and crosshead, toward the shaft: gas + weight − friction − rod − m z̈
     parts = drive.cylinder.masses.parts if drive.cylinder.masses else 0.0
-    gas_and_ram = sum(force for force in (state.P_gas, state.P_ram) if force is not None)
+    applied = (state.P_gas, state.P_ram, state.P_load)
+    gas_and_loads = sum(force for force in applied if force is not None)
     side = 0.0 if state.N is None else np.abs(state.N)
     rubs = state.direction * (state.steady_friction + drive.crosshead_friction * side)
     push = state.along_rod
@@ -89,7 +90,7 @@ def residual(cylinder: SampledCylinder) -> float | None:
     if motion:
         push = on_crosshead_pin(state).D
         moved = motion.crosshead.real
-    left = [gas_and_ram - gravity.real * parts - rubs - push + parts * moved * square]
+    left = [gas_and_loads - gravity.real * parts - rubs - push + parts * moved * square]
     # the shaft: T R less the moments in crank pin and journals less M, over R
     lost = state.rubbing.at_crank + state.rubbing.journals if state.rubbing else 0.0
     left.append(state.tangential_at_pin - (lost + state.M) / mechanism.crank)
@@ -139,7 +140,9 @@ def _energy(rod: _Rod, state: State, motion: _Motion) -> float:
     centre = motion.crosshead_speed * (1 - rod.centre) + motion.pin_speed * rod.centre
     J = J + rod.mass * np.abs(centre) ** 2 + rod.inertia * motion.turn**2
     size = float(np.max(J))
-    return float(np.abs(J - reduced_inertia(state)).max()) / size if size else 0.0
+    if not size:
+        return 0.0
+    return float(np.abs(J - reduced_inertia(state)).max()) / size
 
 
 def _of_rod(

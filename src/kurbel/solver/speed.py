@@ -56,12 +56,16 @@ class SpeedLaw(NamedTuple):
         if load is None or load.diagram or not effort.mean.any():
             return None
         is_constant = load.slip is None and every(load.power == 0)
-        return None if is_constant else cls(effort.mean, load.power, load.slip)
+        if is_constant:
+            return None
+        return cls(effort.mean, load.power, load.slip)
 
     @property
     def steepness(self) -> Array:
         """ω_n dM_load/dω at the nominal speed in N m, (n,)."""
-        return self.mean * self.power if self.slip is None else np.abs(self.mean) / self.slip
+        if self.slip is None:
+            return self.mean * self.power
+        return np.abs(self.mean) / self.slip
 
     def rise(self, ratio: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return the load beyond that at the nominal speed in N m, and its derivative by r, at r (…, pieces)."""
@@ -195,10 +199,10 @@ class SpeedEquation:
         inertia = moving + pieces.of(self.flywheel)
         return np.stack((excess, inertia * pieces.of(self._effort.omega**2 / 2)))
 
-    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
+    def rate(self, samples: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return z′ and its derivative by z."""
         assert self._law
-        excess, energy = known
+        excess, energy = samples
         rise, slope = self._law.rise(y[0] / energy, pieces)
         return (excess - rise)[None], (-slope / energy)[None, None]
 

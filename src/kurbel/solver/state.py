@@ -3,7 +3,7 @@
 Forces on the crosshead on the outstroke, 0 < φ < 180°; cylinder on the left, shaft on the right, crank pin above the
 stroke line:
 
-            ↓ G, S sin ψ        P  gas, inertia, weight, load on a ram;  G  weight across the stroke line
+            ↓ G, S sin ψ        P  gas, inertia, weight, loads;  G  weight across the stroke line
     P →  ───O───  ← S cos ψ     along it   S cos ψ = P − friction of crosshead, f |N|, and rings
             ↑ N   ← friction    across it  N = S sin ψ + G, from the lower guide, positive as drawn
 
@@ -35,7 +35,7 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.numerics.arithmetic import some, total
+from kurbel.numerics.arithmetic import some, spread, total
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import QuantityRow, column, value
@@ -171,10 +171,27 @@ class State(Chambers):
         "Force opposing the motion of a ram",
         lambda state: state.resistance if state.mechanism.slides else None,
     )
+
+    @column(
+        "P_L",
+        "force",
+        extremes=("forces",),
+        called="load on what slides or swings",
+    )
+    def P_load(self) -> Array | None:
+        """Load `force` on what slides, positive as P is; on what swings at its lever, positive where θ rises."""
+        load = self.drive.load
+        if load is None:
+            return None
+        force = load.without_points(self.displacement, self.drive.index)
+        if load.profile is not None:
+            force = force + self.pressure(load.profile)
+        return self.filled(force)
+
     P = value(
         "P",
         "force",
-        "Force along the stroke line: gas, inertia, weight and ram resistance",
+        "Force along the stroke line: gas, inertia, weight and loads",
         lambda state: _sum(state.P_inertia, state.P_start),
         extremes=("forces",),
         called="piston force",
@@ -198,7 +215,7 @@ class State(Chambers):
         "P_0",
         "force",
         "Force along the stroke line without inertia",
-        lambda state: _sum(_sum(state.P_gas, state.P_weight), state.P_ram),
+        lambda state: _sum(_sum(state.P_gas, state.P_weight), state.sliding_load),
         commands=(),
         extremes=("forces",),
         called="piston force without inertia: starting and slow running",
@@ -213,6 +230,28 @@ class State(Chambers):
         working_direction = 1.0 if self.mechanism.works_outward else -1.0
         works = self.direction == working_direction
         return self.filled(-self.direction * np.where(works, resistance.work, resistance.back))
+
+    @property
+    def output_load(self) -> Number | None:
+        """All loads on the output in N, or in N m where it swings or turns; positive where x or θ rises."""
+        load = self.drive.load
+        if load is None:
+            return self.resistance
+        return _sum(self.resistance, self.P_load * spread(load.lever, self.drive.index))
+
+    @property
+    def sliding_load(self) -> Number | None:
+        """All loads in N on what slides along the stroke line; None where the output swings or turns."""
+        return self.output_load if self.mechanism.slides else None
+
+    @property
+    def driving_force(self) -> Number:
+        """Force in N (moment in N m) at the output of pistons that drive, and of loads that drive."""
+        drive = self.drive
+        force: Number = 0.0 if self.P_driving is None else self.P_driving
+        if some(drive.load_drives):
+            force = force + self.output_load * spread(drive.load_drives, drive.index)
+        return force
 
     def rod_load(self, crosshead: bool = True) -> Array | None:
         """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft (API 618).
@@ -297,7 +336,9 @@ class State(Chambers):
             block, _ = self.drive.yoke_friction
             return np.abs(self.along_rod) * self._forward * block
         rubbing = self.rubbing
-        return 0.0 if rubbing is None else self._side(rubbing.at_crank + rubbing.at_crosshead)
+        if rubbing is None:
+            return 0.0
+        return self._side(rubbing.at_crank + rubbing.at_crosshead)
 
     @cached_property
     def _rod_side(self) -> Number:
@@ -367,8 +408,8 @@ class State(Chambers):
     @property
     def knuckle_momentum_rate(self) -> Number:
         """Rate m_k ω² Im(z* z″) in N m of the moment of momentum of that mass about the shaft."""
-        place = self.linked_piston.knuckle_place(self.angle)
-        rate: Number = -(np.conj(place) * self._knuckle_inertia).imag
+        knuckle = self.linked_piston.knuckle_place(self.angle)
+        rate: Number = -(np.conj(knuckle) * self._knuckle_inertia).imag
         return rate
 
     @cached_property
@@ -389,7 +430,9 @@ class State(Chambers):
     @cached_property
     def _links_side(self) -> Number:
         """Side force ΣM_K/(L cos ψ) in N that the link rods take from the guide of a master; 0 without them."""
-        return self._side(self._moment_of_links) if self.drive.links else 0.0
+        if not self.drive.links:
+            return 0.0
+        return self._side(self._moment_of_links)
 
     @property
     def moment_on_master(self) -> Any:
@@ -398,7 +441,9 @@ class State(Chambers):
             return None
         if self.drive.cylinder.link_rod is not None:
             return self.knuckle_moment
-        return self._moment_of_links if self.drive.links else None
+        if not self.drive.links:
+            return None
+        return self._moment_of_links
 
     @cached_property
     def _moment_of_links(self) -> Number:
@@ -437,7 +482,9 @@ class State(Chambers):
     def after_steady_friction(self) -> Number:
         """Piston force P in N less the steady friction; acts on the crosshead."""
         steady = self.steady_friction
-        return self.P - self.direction * steady if some(steady != 0) else self.P
+        if some(steady != 0):
+            return self.P - self.direction * steady
+        return self.P
 
     @cached_property
     def guide_sense(self) -> Number:
@@ -570,14 +617,16 @@ class State(Chambers):
     M_out = value(
         "M_2",
         "torque",
-        "Resisting moment on the rocker, or on the second crank",
-        lambda state: None if state.mechanism.slides else state.resistance,
+        "Moment of the load on the rocker, or on the second crank",
+        lambda state: None if state.mechanism.slides else state.output_load,
     )
 
     @property
     def _output(self) -> Any:
         """Force in N (moment in N m) at the output, less friction, from which virtual work gives T and M."""
-        return self.along_rod if self.mechanism.slides else self.M_out
+        if self.mechanism.slides:
+            return self.along_rod
+        return self.M_out
 
     @cached_property
     def _rod_tangential(self) -> Number:
@@ -617,7 +666,9 @@ class State(Chambers):
 
         It lacks the moments of friction in pin and journals, which T includes.
         """
-        return self.tangential_at_pin if self.drive.pin_friction else None
+        if not self.drive.pin_friction:
+            return None
+        return self.tangential_at_pin
 
     @cached_property
     def tangential_at_pin(self) -> Any:
@@ -720,4 +771,6 @@ def _sum(first: Any, second: Any) -> Any:
     """Return the sum of two forces, of which each may be None."""
     if first is None:
         return second
-    return first if second is None else first + second
+    if second is None:
+        return first
+    return first + second

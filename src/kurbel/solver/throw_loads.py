@@ -20,7 +20,9 @@ def state_at(forces: CylinderForces, degrees: Array, within: Array) -> State:
 
 def pin_load(state: State) -> Force:
     """Return the force of a rod on the crank pin in N, D + iT; 0 where no force acts in the cylinder."""
-    return on_pin(state).complex if state.drive.has_force else 0j
+    if not state.drive.has_force:
+        return 0j
+    return on_pin(state).complex
 
 
 def resampled(pieces: Pieces, forces: CylinderForces, *values: Force) -> ComplexArray:

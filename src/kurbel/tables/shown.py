@@ -3,6 +3,7 @@
 import re
 from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -144,7 +145,7 @@ class Places(NamedTuple):
         names = [row_names for row_names, _ in self.rows]
         words: dict[str, str] = {}
         if not self.headed:
-            words = {_as_id(name): name for row_names in names for name in row_names}
+            words = {_as_id(name): name for name in chain.from_iterable(names)}
             names = [tuple(map(_as_id, row_names)) for row_names in names]
         return PlaceTable(
             self.id,

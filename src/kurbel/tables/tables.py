@@ -4,7 +4,7 @@ import math
 import re
 from array import array
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from itertools import groupby
+from itertools import chain, groupby
 from typing import NamedTuple, TypeVar, Union
 
 from kurbel.declared.reading import text_in_one_line
@@ -146,14 +146,17 @@ class Report(NamedTuple):
     @property
     def all_parts(self) -> tuple[Part, ...]:
         """The parts, and the whole machine after them."""
-        return self.parts if self.whole is None else (*self.parts, self.whole)
+        if self.whole is None:
+            return self.parts
+        return (*self.parts, self.whole)
 
     @property
     def printed_tables(self) -> Iterator[PlaceTable]:
         """The tables of places that are printed for people."""
-        return (
-            table for part in self.all_parts for table in part.place_tables if not table.in_note
-        )
+        for part in self.all_parts:
+            for table in part.place_tables:
+                if not table.in_note:
+                    yield table
 
     @property
     def is_of_one_cylinder(self) -> bool:
@@ -351,7 +354,7 @@ def shown_once(report: Report) -> Report:
     parts = []
     for group in groups:
         name = together([str(part.name) for part in group])
-        warnings = dict.fromkeys(warning for part in group for warning in part.warnings)
+        warnings = dict.fromkeys(chain.from_iterable(part.warnings for part in group))
         parts.append(group[0]._replace(name=name, warnings=tuple(warnings)))
     is_alone = len(parts) == 1 and report.whole is None
     return report._replace(
@@ -379,10 +382,13 @@ def _content(part: Part) -> Hashable:
 def _left_out_in_short(parts: Iterable[Part]) -> tuple[str, ...]:
     """Return what parts leave out as one sentence, each reason once."""
     reasons = dict[str, list[str]]()
-    for left_out in dict.fromkeys(left_out for part in parts for left_out in part.left_out):
+    all_left_out = dict.fromkeys(chain.from_iterable(part.left_out for part in parts))
+    for left_out in all_left_out:
         reasons.setdefault(left_out.why, []).append(left_out.what)
     texts = [f"{', '.join(what)} ({why})" for why, what in reasons.items()]
-    return (f"Left out: {'; '.join(texts)}.",) if texts else ()
+    if not texts:
+        return ()
+    return (f"Left out: {'; '.join(texts)}.",)
 
 
 def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) -> Report:

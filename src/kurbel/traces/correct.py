@@ -168,8 +168,7 @@ class Trace(Indivisible):
 
     def from_dead_centre(self, setting: Setting) -> Array:
         """Return the angles (n,) in degrees of samples from the chamber's own (firing) dead centre, −½ to ½ cycle."""
-        after = self.angles + self.shift(setting) - setting.own_dead_centre
-        return np.remainder(after + setting.cycle / 2, setting.cycle) - setting.cycle / 2
+        return setting.after_dead_centre(self.angles + self.shift(setting))
 
     def of_cycle(self, number: int, period: float) -> "Trace":
         """Return one cycle of these degrees alone, counted from 1."""

@@ -87,6 +87,16 @@ class Released(NamedTuple):
         burnt[self.last :] = 1.0
         return burnt
 
+    def burnt_at(self, after: Array) -> Array:
+        """Return the burnt share x_b at so many degrees after the firing dead centre."""
+        return np.interp(after, self.angles, self.burnt)
+
+    def rate_at(self, after: Array) -> Array:
+        """Return the heat in J released over the degree around these angles, after the firing dead centre."""
+        ahead = np.interp(after + CHORD / 2, self.angles, self.heat)
+        behind = np.interp(after - CHORD / 2, self.angles, self.heat)
+        return (ahead - behind) / CHORD
+
     def angle_at(self, share: float) -> float:
         """Return the first angle in degrees after which so much of the heat is released."""
         burnt = self.burnt
@@ -103,8 +113,6 @@ class Released(NamedTuple):
     def fastest(self) -> tuple[float, float]:
         """The largest heat in J that is released over one degree, and the angle in the middle of that."""
         middles = self.angles[self.first : self.last + 1]
-        ahead = np.interp(middles + CHORD / 2, self.angles, self.heat)
-        behind = np.interp(middles - CHORD / 2, self.angles, self.heat)
-        rates = (ahead - behind) / CHORD
+        rates = self.rate_at(middles)
         top = int(np.argmax(rates))
         return float(rates[top]), float(middles[top])

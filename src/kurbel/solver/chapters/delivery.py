@@ -434,7 +434,9 @@ class MachineDelivery:
         if len(self._pumps) < 2:
             return ()
         # cylinders of a group are alike but for their crank angles: the first is computed for all
-        representatives = {id(forces): group[0] for group in self.effort.groups for forces in group}
+        representatives = dict[int, CylinderForces]()
+        for group in self.effort.groups:
+            representatives |= {id(forces): group[0] for forces in group}
         computed: dict[tuple[int, int], Delivery] = {}
         deliveries = list[Delivery]()
         for forces, piston in self._pumps:

@@ -76,7 +76,9 @@ def _levels(chamber: Chamber | None) -> list[Number] | None:
     if isinstance(chamber, Rectangle):
         if some(chamber.mean != 0):
             return None
-        return [] if chamber.level is None else [chamber.level]
+        if chamber.level is None:
+            return []
+        return [chamber.level]
     if not isinstance(chamber, Card):
         return None
     levels = list[Number]()
