@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Iterable, Iterator
 
@@ -77,7 +78,13 @@ def _table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 
 def _cell(text: str) -> str:
-    return text.replace("|", "\\|").replace("\n", " ")
+    """Return a text as a cell; in code a bar is written as a character reference, since a backslash would be printed."""
+    cell = re.sub(r"`([^`]*\|[^`]*)`", _code_with_bars, text)
+    return cell.replace("|", "\\|").replace("\n", " ")
+
+
+def _code_with_bars(code: re.Match[str]) -> str:
+    return f"<code>{html.escape(code[1], quote=False).replace('|', '&#124;')}</code>"
 
 
 def _by_command(declared: Iterable[Quantity]) -> Iterator[str]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kurbel.declared.unit_systems import messages_in
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.machine_file.reader import machine_of
@@ -40,12 +41,15 @@ class Drawing(NamedTuple):
 
         return svg_file(self.pictures, Look())
 
-    def save(self, file_name: str) -> None:
-        """Draw to a file that ends in .svg, .png or .pdf. Raises UsageError where it cannot be written."""
+    def save(self, file_name: str, paper: str = "a4") -> None:
+        """Draw to a file that ends in .svg, .png or .pdf; paper: of a pdf, see `kurbel plot --paper`.
+
+        Raises UsageError where it cannot be written.
+        """
         from kurbel.render import Look
         from kurbel.render.drawing import draw_file
 
-        draw_file(self.pictures, Look(), file_name)
+        draw_file(self.pictures, Look(), file_name, paper)
 
 
 def draw(
@@ -58,7 +62,8 @@ def draw(
     from kurbel.pictures.picture_source import PictureOptions
     from kurbel.pictures.pictures import pictures
 
-    return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
+    with messages_in(units):
+        return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
 
 
 def as_html(shown: solved.Case | Results) -> str:

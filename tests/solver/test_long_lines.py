@@ -7,7 +7,7 @@ import pytest
 
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftPart, line_of
-from kurbel.machine.turning import Effort, Load
+from kurbel.machine.shaft_side import Effort, Load
 from kurbel.solver.case import Case
 from kurbel.solver.chapters import torsion
 from kurbel.solver.chapters.excitation import Vibration, excitation

@@ -460,7 +460,7 @@ def plain_turning(bearing: RodPin) -> np.ndarray:
 
 
 def twice_entrained(equation: FilmEquation, pieces: Pieces) -> np.ndarray:
-    known = pieces.carried(equation._course, equation._pieces)
+    known = pieces.resampled(equation._course, equation._pieces)
     return known * np.array([1.0, 1.0, 2.0])[:, None, None]
 
 

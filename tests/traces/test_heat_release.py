@@ -112,7 +112,7 @@ def test_heat_is_printed_where_it_is_asked_for_alone(tmp_path: Path) -> None:
     path = tmp_path / "m.yaml"
     path.write_text(machine_text(tmp_path, columns, f", clearance: {CLEARANCE}, heat: {{}}"))
     printed = run("forces", str(path), "--key-values", "heat_released phi_burnt_50").output
-    assert "Heat released by the trace" in printed
+    assert "Heat released per cycle" in printed
     table = run("forces", str(path), "--columns", "dQ,x_b", "-f", "csv", "--step", "5").output
     assert table.splitlines()[0] == "phi_deg,dQ_J/deg,x_b"
     path.write_text(machine_text(tmp_path, columns, f", clearance: {CLEARANCE}"))

@@ -14,7 +14,7 @@ from kurbel.accuracy.textbook import STEPS, TextbookCylinder
 from kurbel.arrays import Array
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.cylinder import crank_lag
-from kurbel.machine.turning import Swing
+from kurbel.machine.shaft_side import Swing
 
 NEEDED: dict[str, Callable[[Precise], Precise]] = {
     "A_i": lambda state: state.slope * state.P_gas,
@@ -43,9 +43,9 @@ def unknown(machine: Machine, quantity: str) -> Iterator[str]:
         yield "link rods"
     for cylinder in taking_part(machine, quantity):
         for piston in cylinder.pistons:
-            cards = piston.chambers.values()
-            if not all(isinstance(card, KNOWN_CARDS) for card in cards):
-                yield "a trace"
+            for card in piston.chambers.values():
+                if not isinstance(card, KNOWN_CARDS):
+                    yield "a trace" if card.traced else "a card by Wiebe"
         friction = cylinder.friction
         if friction and friction.journals and machine.crankshaft is not None:
             yield "journals that rub in the bearings of a crankshaft"

@@ -32,7 +32,7 @@ from kurbel.notes.warnings import Note, as_far_as_solved, machine_notes
 from kurbel.solver.case import Case
 from kurbel.solver.drive import any_of
 from kurbel.solver.forces import CylinderForces
-from kurbel.tables.tables import LeftOut, grouped, together
+from kurbel.tables.tables import LeftOut, grouped, joined_names
 
 _EVEN = 0.5
 """Difference of firing intervals in degrees that rounded angles explain."""
@@ -67,7 +67,7 @@ class Checked(NamedTuple):
         )
         merged = []
         for group in groups:
-            title = together([topic.title for topic in group])
+            title = joined_names([topic.title for topic in group])
             merged.append(group[0]._replace(title=title))
         return merged
 
@@ -304,7 +304,7 @@ def _oil_film_entries(case: Case) -> Iterator[CheckEntry]:
         yield CheckEntry("oil film", text, "warning", path)
     with_film = [bearing.name for bearing in bearings if bearing.oil and not bearing.film_obstacle]
     if with_film:
-        yield CheckEntry("computed", f"oil film of {together(with_film)}")
+        yield CheckEntry("computed", f"oil film of {joined_names(with_film)}")
     for bearing in bearings:
         if bearing.film_obstacle:
             yield _left_out(f"oil film of {bearing.name}: {bearing.film_obstacle}", path)

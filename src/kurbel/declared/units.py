@@ -48,7 +48,7 @@ KINDS = {
     "mass": Kind(
         1e-12,
         1e18,
-        f"{_MASSES}; tonne, long ton, short ton",
+        f"{_MASSES}; tonne, long ton, short ton, mg",
         "kg",
         ("kg", "t"),
         None,
@@ -200,9 +200,14 @@ KINDS = {
         "psi ft/s",
     ),
     "density": Kind(
-        1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3", written="1000 kg/m3"
+        1e-9,
+        1e9,
+        "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3",
+        "kg/m^3",
+        imperial="lb/ft^3",
+        written="1000 kg/m3",
     ),
-    "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", written="20 °C"),
+    "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", imperial="°F", written="20 °C"),
     "flow": Kind(
         0,
         1e18,
@@ -217,6 +222,16 @@ KINDS = {
         1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"
     ),
     "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K", written="287 J/kg K"),
+    "heating_value": Kind(
+        0,
+        1e12,
+        "J/kg, kJ/kg, MJ/kg, kcal/kg, Btu/lb",
+        "J/kg",
+        "MJ/kg",
+        "kcal/kg",
+        "Btu/lb",
+        "42.7 MJ/kg",
+    ),
     "viscosity": Kind(
         1e-6,
         1e3,
@@ -329,6 +344,8 @@ _FACTORS: dict[str, UnitFactor] = {
     # torque in N m, energy in J, power in W
     "Nm": (1, 1),
     "J": (1, 1),
+    "kcal": (4186.8, 1),
+    "Btu": (4186.8 * _POUND * 5, 9),
     "W": (1, 1),
     "PS": (75 * GRAVITY, 1),
     # viscosity in Pa s

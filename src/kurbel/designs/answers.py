@@ -205,7 +205,7 @@ def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[in
         if not is_slow(batch.machine, requested):
             for start in range(0, len(batch.rows), most):
                 indices = np.arange(start, min(start + most, len(batch.rows)))
-                by_row |= _together(batch, indices, requested)
+                by_row |= _values_of_batch(batch, indices, requested)
         for index, row in enumerate(batch.rows):
             if row not in by_row:
                 by_row[row] = answered_alone(batch.single(index), requested)
@@ -232,7 +232,7 @@ def _is_long(chamber: Chamber) -> bool:
     return sum(len(line.fractions) for line in chamber.lines) > _MOST_POINTS
 
 
-def _together(
+def _values_of_batch(
     batch: Batch, indices: Indices, requested: Sequence[Answer]
 ) -> dict[int, DesignValues]:
     """Return the key values of a batch by its rows, without machines that fail or have a value that is not finite."""
@@ -243,8 +243,8 @@ def _together(
         columns, other_parts = _values(Case(machine, len(indices)), requested)
     except (KurbelError, ArithmeticError, RuntimeWarning):
         half = len(indices) // 2
-        first = _together(batch, indices[:half], requested)
-        return first | _together(batch, indices[half:], requested)
+        first = _values_of_batch(batch, indices[:half], requested)
+        return first | _values_of_batch(batch, indices[half:], requested)
 
     # whether a crosshead locks itself is known of a single machine only
     is_good = np.ones(len(indices), dtype=bool)

@@ -134,7 +134,7 @@ class Binder:
         for group in _groups_alike(words, rows):
             rows_alone = group
             if len(group) > 1:
-                together, rows_alone = self._together(columns, group)
+                together, rows_alone = self._bound_together(columns, group)
                 batches += together
             for row in rows_alone.tolist():
                 machine = self._alone([column.text(row) for column in columns])
@@ -180,7 +180,9 @@ class Binder:
             words.append(start if is_numeric else text)
         return words
 
-    def _together(self, columns: Sequence[KeyColumn], rows: Indices) -> tuple[list[Batch], Indices]:
+    def _bound_together(
+        self, columns: Sequence[KeyColumn], rows: Indices
+    ) -> tuple[list[Batch], Indices]:
         """Return the machines of rows with the same words, and the rows that must be read one by one."""
         try:
             self._read_structure(columns, rows[0])

@@ -25,7 +25,7 @@ from kurbel.errors import KurbelError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import case_names
 from kurbel.solver.case import Case
-from kurbel.tables.tables import grouped, together
+from kurbel.tables.tables import grouped, joined_names
 
 _BLOCK, _SLOW_BLOCK = 1000, 10
 """Rows computed together, and those of designs that are computed one after another."""
@@ -119,7 +119,7 @@ class Sweep:
         for group in grouped(range(len(answers)), content):
             name, column = heads[count + group[0]]
             if len(group) > 1:
-                owners = together([answers[index].subject for index in group])
+                owners = joined_names([answers[index].subject for index in group])
                 name = f"{owners}.{name.rpartition('.')[2]}"
             shown.append((name, column))
         return shown

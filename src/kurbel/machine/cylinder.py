@@ -35,6 +35,7 @@ from kurbel.machine.parts import (
 )
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
+from kurbel.numerics.arithmetic import where
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
@@ -270,6 +271,7 @@ class Cylinder(Record):
         if self.valve:
             yield from (rule.below("valve") for rule in self.valve.rules_on(self.mechanism))
         yield from _of_events(self)
+        yield from _of_strokes(self)
         at_point = (
             [rule.below("point") for rule in self.point.rules_on(self.mechanism)]
             if self.point
@@ -432,6 +434,23 @@ def _of_events(cylinder: Cylinder) -> Iterator[Rule]:
             valve = None if number else cylinder.valve
             shuts_early = None if valve is None else valve.compresses
             yield from (rule.below(*path, end) for rule in card.rules_of_events(shuts_early))
+
+
+def _of_strokes(cylinder: Cylinder) -> Iterator[Rule]:
+    """Heat that is released over the crank angle fits the strokes of its piston."""
+    for number, piston in enumerate(cylinder.pistons):
+        path = ("tandem", number - 1, "indicator") if number else ("indicator",)
+        areas = {"head_end": piston.head_area, "crank_end": piston.crank_area}
+        for end, card in piston.chambers.items():
+            if card.by_stroke or card.traced:
+                continue
+            volume = areas[end] * abs(piston.lever_ratio) * cylinder.mechanism.stroke
+            inner, outer = cylinder.mechanism.dead_centres()
+            outstroke = outer - inner
+            expands_outward = (end == "head_end") != (piston.lever_ratio < 0)
+            expansion = where(expands_outward, outstroke, 360.0 - outstroke)
+            rules = card.rules_of_strokes(360.0 - expansion, expansion, volume)
+            yield from (rule.below(*path, end) for rule in rules)
 
 
 def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:

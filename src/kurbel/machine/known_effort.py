@@ -10,7 +10,7 @@ from kurbel.arrays import Array
 from kurbel.declared.record import Rule, ValuesByKey, alternative
 from kurbel.declared.units import DiagramPoint, UnitFactor
 from kurbel.machine.measured import Columns
-from kurbel.machine.turning import (
+from kurbel.machine.shaft_side import (
     HARMONICS,
     MEAN,
     POINTS,

@@ -28,7 +28,7 @@ class Offer:
 
     factor: takes the mechanism and a crank angle and returns the value in SI over what it is proportional to, of the
     shape of the angle, or None where it is not known. It is proportional to ω to the power `omega`, and to what `force`
-    takes of the state: `P`, `along_rod` (P less friction), `N`, or the moment `M_out` on what swings. unless: takes the
+    takes of the state: `P`, `along_stroke` (P less friction), `N`, or the moment `M_out` on what swings. unless: takes the
     results of the command; where it is true, the column says nothing new there.
     """
 
@@ -486,7 +486,7 @@ NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
 def pin_force(factor: ColumnFactor) -> Offer:
     """Return the force on a crank pin that carries no connecting rod; factor: over P less friction."""
     text = "Force of the sliding block or rod on the crank pin, positive in the direction of P"
-    return force_column("F_pin", "F_z", "force", text, factor, lambda state: state.along_rod)
+    return force_column("F_pin", "F_z", "force", text, factor, lambda state: state.along_stroke)
 
 
 BLOCK_OFFERS = (

@@ -23,7 +23,7 @@ _N_PAIR = force_column(
     "force",
     "Force on each of the two guides of a yoke, in opposite directions",
     lambda yoke, angle: yoke.guide_pair_factor(angle),
-    lambda state: state.along_rod,
+    lambda state: state.along_stroke,
 )
 
 

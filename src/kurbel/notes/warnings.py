@@ -23,7 +23,7 @@ from kurbel.notes.plausible import cylinder_doubts, machine_doubts
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.piston_works import Brake
-from kurbel.tables.tables import grouped, together
+from kurbel.tables.tables import grouped, joined_names
 
 
 class Note(NamedTuple):
@@ -108,7 +108,7 @@ def of_machine(case: Case) -> Iterator[str]:
     for notes in grouped(machine_notes(case), itemgetter(1)):
         names = [note.cylinder for note in notes if note.cylinder is not None]
         is_named = names and len(case.machine.cylinders) > 1
-        prefix = f"{together(names)}: " if is_named else ""
+        prefix = f"{joined_names(names)}: " if is_named else ""
         yield prefix + notes[0].text
 
 
@@ -410,7 +410,7 @@ def guide_notes(case: Case) -> Iterator[str]:
         if has_lower_guide and forces.extremes_of("N") is not None and not forces.lifted:
             resting.append(drive.name)
     if resting:
-        name = f"{together(resting)}: " if len(case.cylinders) > 1 else ""
+        name = f"{joined_names(resting)}: " if len(case.cylinders) > 1 else ""
         yield (
             f"{name}Turning {rotation}, "
             "the crosshead rests on the lower guide all round (R p. 602)."

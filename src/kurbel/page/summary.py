@@ -28,7 +28,7 @@ from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Subject, before_jumps
 from kurbel.tables.shown import PlaceRow, Places
-from kurbel.tables.tables import BEFORE, grouped, together
+from kurbel.tables.tables import BEFORE, grouped, joined_names
 
 Thing = TypeVar("Thing")
 _LABELS = {
@@ -245,7 +245,7 @@ def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Fact | None:
     decisive = min if id in _SMALLEST else max
     largest = decisive(of_whole or facts, key=lambda fact: abs(fact.value))
     equal = [fact.where for fact in facts if f"{fact.value:.6g}" == f"{largest.value:.6g}"]
-    return largest._replace(where=together(equal) if len(equal) < len(facts) else "")
+    return largest._replace(where=joined_names(equal) if len(equal) < len(facts) else "")
 
 
 def _fact_of(id: str, command: str, subject: Subject) -> Fact | None:

@@ -216,7 +216,8 @@ class Panel(NamedTuple):
     """Two axes with what is on them; equal: both have one scale; plain: without axes.
 
     title: what distinguishes it from the other panels of its picture; bodies: parts of a machine, below the curves, in
-    the order in which they cover each other; footnote: what of them is to scale.
+    the order in which they cover each other; footnote: what of them is to scale. angle: the crank angle in degrees for
+    which it is drawn, where it was chosen.
     """
 
     x: Axis
@@ -230,6 +231,7 @@ class Panel(NamedTuple):
     bodies: tuple[Body, ...] = ()
     captions: tuple[Caption, ...] = ()
     footnote: str = ""
+    angle: float | None = None
 
     @property
     def places(self) -> tuple[list[Array], list[Array]]:
@@ -273,6 +275,17 @@ class Picture(NamedTuple):
         if not self.machine:
             return title
         return f"{self.machine}. {title}"
+
+    @property
+    def rows(self) -> "list[Picture]":
+        """Its rows of panels, each as a picture of its own, the last one with the legend."""
+        rows = []
+        for start in range(0, len(self.panels), self.across):
+            row = self.panels[start : start + self.across]
+            rows.append(self._replace(panels=row, legend=()))
+        if rows:
+            rows[-1] = rows[-1]._replace(legend=self.legend)
+        return rows
 
 
 # a long report
@@ -362,7 +375,8 @@ class Section(NamedTuple):
 class Document(NamedTuple):
     """A report on one machine, or on several next to one another.
 
-    subtitles: what kind of machine each is; summary: what is on the first page.
+    subtitles: what kind of machine each is; summary: what is on the first page; prints_tables: whether the tables over
+    the crank angle are printed, too.
     """
 
     title: str
@@ -370,3 +384,4 @@ class Document(NamedTuple):
     summary: tuple[SectionItem, ...]
     sections: tuple[Section, ...]
     provenance: tuple[Provenance, ...]
+    prints_tables: bool = False

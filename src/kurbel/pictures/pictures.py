@@ -49,7 +49,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.state import State
 from kurbel.tables.frame import equal_parts
-from kurbel.tables.tables import cylinder_meant, grouped, together
+from kurbel.tables.tables import cylinder_meant, grouped, joined_names
 
 # one cylinder
 
@@ -477,5 +477,5 @@ def _sources_of_parts(
     for group in equal_parts(parts, command):
         chosen = [subject for subject in group if are_bearings or name in (None, subject.name)]
         if chosen:
-            names = together([subject.name for subject in chosen]) if are_several else ""
+            names = joined_names([subject.name for subject in chosen]) if are_several else ""
             yield Source(chosen[0].results, options.angles), names

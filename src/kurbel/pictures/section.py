@@ -67,7 +67,8 @@ def mechanism(source: Source) -> Iterator[Panel]:
         trains = [Train(case.machine, forces, degrees, is_alone) for forces in cylinders]
         decimals = 6 if source.angles else 2
         title = f"φ = {round(float(degrees[0]), decimals):.9g}°"
-        yield _panel(case.machine, trains)._replace(title=title)
+        chosen_angle = None if source.angles is None else float(degrees[0])
+        yield _panel(case.machine, trains)._replace(title=title, angle=chosen_angle)
 
 
 def _has_no_sketch(forces: CylinderForces) -> bool:

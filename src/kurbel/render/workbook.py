@@ -170,8 +170,8 @@ def _meanings(report: Report, look: Look) -> list[tuple[str, ...]]:
     """Return the columns of all tables, each once: id, symbol, unit and meaning."""
     rows: dict[tuple[str, ...], None] = {}
     for part in report.all_parts:
-        of_places = [column for table in part.place_tables for column in table.columns]
-        for column in (*part.columns, *of_places):
+        place_tables_of = [column for table in part.place_tables for column in table.columns]
+        for column in (*part.columns, *place_tables_of):
             symbol = look.symbol(column.symbol, column.ascii_symbol)
             if column.text:
                 rows[column.id, symbol, look.unit(column.unit), look.data(column.text)] = None

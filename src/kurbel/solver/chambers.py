@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kurbel.arrays import Array, Number, Truth
+from kurbel.arrays import Array, Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.arithmetic import spread
 from kurbel.quantity import value, values_for
@@ -43,15 +43,20 @@ def _own_volume(state: Chambers, end: str) -> Number | None:
 
 
 def _own_rise(state: Chambers, end: str) -> Array | None:
+    """Return the rise of a pressure over the crank angle; None where the end has none, or a card over the stroke."""
     chamber = _own_end(state, end)
-    return chamber.rise(state.phi) if chamber and chamber.traced else None
+    if chamber is None or chamber.by_stroke:
+        return None
+    return chamber.rise(state.phi, state.drive.index)
 
 
-def _own_heat(state: Chambers, column: Callable[[HeatOfEnd, Array], Array]) -> Array | None:
+def _own_heat(
+    state: Chambers, column: Callable[[HeatOfEnd, Array, Indices | None], Array]
+) -> Array | None:
     """Return a column of the heat release; None where the cylinder's own piston has none."""
     gas = state.drive.own_gas
     heat = gas.heat if gas else None
-    return None if heat is None else column(heat, state.phi)
+    return None if heat is None else column(heat, state.phi, state.drive.index)
 
 
 def _opening(state: Chambers, end: str) -> Number | None:
@@ -137,7 +142,7 @@ class Chambers(MotionColumns):
     dQ = value(
         "dQ/dφ",
         "energy_rise",
-        "Heat released per degree of crank angle, of a trace over 1 deg, less what the walls take",
+        "Heat released per degree of crank angle, over 1 deg, less what the walls take",
         lambda state: _own_heat(state, HeatOfEnd.rate),
         on_request=("forces",),
     )

@@ -23,7 +23,7 @@ from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, Samples, joined_pieces, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import result
-from kurbel.solver.state import State, on_crosshead_pin, on_pin
+from kurbel.solver.state import State, crank_pin_force, crosshead_pin_force
 
 T = TypeVar("T")
 
@@ -140,7 +140,7 @@ def _state_on(drive: Drive, pieces: Pieces) -> State:
 
     These are computed once.
     """
-    what_may_vary = (drive.mechanism, drive.cylinder.timed_pistons, drive.machine.ambient)
+    what_may_vary = (drive.mechanism, drive.pistons, drive.machine.ambient)
     if drive.count is None or varies(what_may_vary):
         return State.on(drive, pieces)
     first = State.on(drive, pieces.taken(pieces.machine == 0))
@@ -210,9 +210,9 @@ def _restored(drive: Drive, pieces: Pieces, samples: Samples) -> State:
 def _loads_of_pins(state: State) -> list[Number]:
     """Return the loads of the pins without their friction: where one passes through zero, its magnitude has a kink."""
     free = state.without_pin_friction
-    loads = [on_pin(free).T]
+    loads = [crank_pin_force(free).T]
     if free.rod_angle:
-        loads.append(on_crosshead_pin(free).D)
+        loads.append(crosshead_pin_force(free).D)
     return loads
 
 
@@ -234,7 +234,7 @@ def _sense_with_pins(state: State) -> list[Number]:
 def _sense(state: State) -> Number:
     """Return the force in N whose sign decides which side of a guide, or of a Scotch yoke, is loaded."""
     if state.rod_angle:
-        return state.guide_sense
+        return state.guide_sign
     return state.after_steady_friction
 
 

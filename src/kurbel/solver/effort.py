@@ -29,7 +29,7 @@ from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State, reduced_inertia
 
 if TYPE_CHECKING:
-    from kurbel.machine.turning import KnownDiagram
+    from kurbel.machine.shaft_side import KnownDiagram
 
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
@@ -166,7 +166,7 @@ class TurningEffort:
             values = source.filled(torque(cylinders[0].samples)) * source.of(factor)
             size = size + len(cylinders) * source.largest(values)
             for cylinder in cylinders:
-                summed = summed + pieces.carried(values, source, position(cylinder))
+                summed = summed + pieces.resampled(values, source, position(cylinder))
         is_left = unless_cancelled(pieces.largest(summed), size, _CANCELLED) != 0
         if is_left.all():
             return summed

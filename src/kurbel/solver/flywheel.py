@@ -131,7 +131,7 @@ class MachineTurning(Results):
 
     Attributes are named by the ids of the key values, in SI; None where the machine does not have one. Forces T are
     referred to the radius of crank 1. Key values of many machines are arrays (machines,), nan where a machine has none.
-    turns: a speed is given that is not 0. Raises UsageError where no torque acts, NoSolutionError where the machine
+    has_speed: a speed is given that is not 0. Raises UsageError where no torque acts, NoSolutionError where the machine
     cannot run.
     """
 
@@ -140,7 +140,7 @@ class MachineTurning(Results):
     def __init__(self, effort: TurningEffort) -> None:
         self.effort, self.machine, self.excess = effort, effort.machine, effort.excess
         self.omega = effort.omega
-        self.turns = effort.omega is not None and some(effort.omega != 0)
+        self.has_speed = effort.omega is not None and some(effort.omega != 0)
         cylinders = self.machine.cylinders
         self.crank = cylinders[0].mechanism.crank if cylinders else None
         self._extremes: dict[str, Extremes | None] = {}
@@ -272,7 +272,7 @@ class MachineTurning(Results):
         "power",
         "Power at the shaft, mean torque times nominal angular velocity",
         lambda turning: (
-            turning.M_mean * turning.omega if turning.turns and turning.knows_mean else None
+            turning.M_mean * turning.omega if turning.has_speed and turning.knows_mean else None
         ),
     )
 
@@ -405,14 +405,16 @@ class MachineTurning(Results):
         "v_K",
         "velocity",
         "Rim speed at the mean diameter",
-        lambda turning: turning.rim.speed(turning.omega) if turning.rim and turning.turns else None,
+        lambda turning: (
+            turning.rim.speed(turning.omega) if turning.rim and turning.has_speed else None
+        ),
     )
     rim_stress = value(
         "σ_K",
         "stress",
         "Hoop stress of the rim, ρ v²",
         lambda turning: (
-            turning.rim.stress(turning.omega) if turning.rim and turning.turns else None
+            turning.rim.stress(turning.omega) if turning.rim and turning.has_speed else None
         ),
     )
 
@@ -425,7 +427,7 @@ class MachineTurning(Results):
 
     def textbook_inertia(self) -> Number | None:
         """Return ΔE/(δ ω²) in kg m², less the inertia beyond a rigid coupling; None without a required δ or a speed."""
-        if self._wanted is None or not self.turns:
+        if self._wanted is None or not self.has_speed:
             return None
         needed = self.excess.dE / (self._wanted * self.omega**2)
         return self.effort.result(np.maximum(needed - self._driven_inertia, 0.0))
@@ -446,7 +448,7 @@ class MachineTurning(Results):
 
         Raises NoSolutionError where the machine stalls.
         """
-        if self.J is None or not self.turns:
+        if self.J is None or not self.has_speed:
             return None
         try:
             return self._line(1.0 if self._needs_no_inertia else self.J)
@@ -457,7 +459,7 @@ class MachineTurning(Results):
     def delta_book(self) -> Number | None:
         """The same by the textbook formula, ΔE/(J ω²)."""
         inertia = (0.0 if self.J is None else self.J) + self._driven_inertia
-        if not self.turns or not some(inertia != 0):
+        if not self.has_speed or not some(inertia != 0):
             return None
         return self.dE / (where(inertia == 0, math.nan, inertia) * self.omega**2)
 
@@ -567,7 +569,7 @@ class MachineTurning(Results):
         """Natural frequency of the coupled masses, relative to the angular velocity."""
         coupling = self.machine.coupling
         has_inertia = self._given is not None or self._wanted is not None
-        if coupling is None or not self.turns or not has_inertia:
+        if coupling is None or not self.has_speed or not has_inertia:
             return None
         flywheel = self._given
         if flywheel is None:
@@ -617,7 +619,7 @@ class MachineTurning(Results):
     @cached_property
     def delta_needed(self) -> Any:
         """δ of the speed line with the flywheel J_δ; None where the machine stalls with it."""
-        if self.J_needed is None or not self.turns or self._needs_no_inertia:
+        if self.J_needed is None or not self.has_speed or self._needs_no_inertia:
             return None
         if self.is_the_needed:
             return self.speed and self.speed.delta

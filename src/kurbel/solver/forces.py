@@ -267,6 +267,13 @@ class CylinderForces(SampledCylinder, Results):
     power = value("N_i", "power", "Indicated power")
     mean_pressure = value("p_i", "pressure", "Mean indicated pressure of the cylinder's own piston")
 
+    p_rise_max = value(
+        "dp/dφ_max",
+        "pressure_rise",
+        "Largest rate of pressure rise, over 1 deg of crank angle",
+        lambda forces: forces.drive.own_gas.steepest if forces.drive.own_gas else None,
+        after="discharge_loss",
+    )
     V_clearance = value(
         "V_c", "volume", "Clearance volume of the head-end chamber", after="mean_pressure_exchange"
     )

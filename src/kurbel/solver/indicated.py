@@ -77,9 +77,6 @@ class Indicated(Results):
     discharge_loss = value(
         "p_v,d", "pressure", "Mean pressure lost between cylinder and discharge line"
     )
-    p_rise_max = value(
-        "dp/dφ_max", "pressure_rise", "Largest rate of pressure rise, over 1 deg of crank angle"
-    )
     cycles_measured = value("Z", "ratio", "Number of measured cycles averaged for the forces")
     mean_pressure_std = value("s_p_i", "pressure", "Standard deviation of p_i over the cycles")
     mean_pressure_cov = value(
@@ -116,7 +113,6 @@ class Indicated(Results):
             lost = float(unless_cancelled(terms.sum(), np.abs(terms).sum()))
             answers["mean_pressure_exchange"] = lost
             answers["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - lost
-        answers["p_rise_max"] = max(trace.steepest for trace in self._traces)
         return answers | self._of_lines() | self._scatter()
 
     def _of_lines(self) -> dict[str, object]:

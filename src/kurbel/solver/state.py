@@ -280,7 +280,7 @@ class State(Chambers):
         """
         if self.P is None or self.rod_angle is None:
             return None
-        return self.along_rod / self.rod_angle[1] - self._rod_side * self.rod_angle[0]
+        return self.along_stroke / self.rod_angle[1] - self._rod_side * self.rod_angle[0]
 
     @column("S_H", "force", extremes=("forces",), called="force along the rod at the crosshead pin")
     def S_crosshead(self) -> Array | None:
@@ -290,7 +290,7 @@ class State(Chambers):
         """
         if self.P is None or self.drive.rod is None:
             return None
-        push, lift = on_crosshead_pin(self)
+        push, lift = crosshead_pin_force(self)
         return push * self.rod_angle[1] + lift * self.rod_angle[0]
 
     @column("S_Z", "force", extremes=("forces",), called="force along the rod at the crank pin")
@@ -322,7 +322,7 @@ class State(Chambers):
         return couple / (self.rod_angle[1] * self.mechanism.rod_length)
 
     @cached_property
-    def _forward(self) -> Array:
+    def _forward_sign(self) -> Array:
         """Sign of cos φ, +1 from 270° to 90°: there the pin moves toward its side of the outstroke."""
         turned = np.mod(self.within, 360.0)
         return np.where((turned < 90.0) | (turned >= 270.0), 1.0, -1.0)
@@ -334,7 +334,7 @@ class State(Chambers):
             if not self.drive.yoke_rubs:
                 return 0.0
             block, _ = self.drive.yoke_friction
-            return np.abs(self.along_rod) * self._forward * block
+            return np.abs(self.along_stroke) * self._forward_sign * block
         rubbing = self.rubbing
         if rubbing is None:
             return 0.0
@@ -358,7 +358,7 @@ class State(Chambers):
         friction = drive.pin_friction if self.pin_friction else None
         if friction is None or self.P is None:
             return None
-        pin = on_pin(self.without_pin_friction)
+        pin = crank_pin_force(self.without_pin_friction)
         bearings: Number = np.hypot(*pin)
         if friction.line is not None and some(friction.journals != 0):
             names = [cylinder.name for cylinder in drive.machine.cylinders]
@@ -373,8 +373,8 @@ class State(Chambers):
         at_crank = np.hypot(*pin) * friction.crank_pin
         at_crosshead: Number = 0.0
         if self.rod_angle is not None:  # the rod turns by −dψ, which friction opposes
-            load = np.hypot(*on_crosshead_pin(self.without_pin_friction))
-            at_crosshead = load * (self._forward * friction.crosshead_pin)
+            load = np.hypot(*crosshead_pin_force(self.without_pin_friction))
+            at_crosshead = load * (self._forward_sign * friction.crosshead_pin)
         return FrictionMoments(at_crank, at_crosshead, bearings * friction.journals)
 
     # link rods
@@ -418,7 +418,7 @@ class State(Chambers):
         if self.P is None:
             return None
         sin_psi, cos_psi = self.rod_angle
-        return self._knuckle_inertia - self.along_rod * (1 - 1j * (sin_psi / cos_psi))
+        return self._knuckle_inertia - self.along_stroke * (1 - 1j * (sin_psi / cos_psi))
 
     @property
     def knuckle_moment(self) -> Any:
@@ -487,7 +487,7 @@ class State(Chambers):
         return self.P
 
     @cached_property
-    def guide_sense(self) -> Number:
+    def guide_sign(self) -> Number:
         """Numerator of N: P sin ψ + G cos ψ in N, G: weight on the guide less side forces of couples."""
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
         return (
@@ -498,13 +498,13 @@ class State(Chambers):
     @cached_property
     def guide_side(self) -> Array:
         """Sign of N, +1 for N = 0: one for each angle, or for each piece at the nodes of pieces."""
-        sense = self.guide_sense
+        sense = self.guide_sign
         if np.ndim(self.angle.sin) > 1:
             sense = rule(len(self.phi)).weights @ sense
         elif self.within is not self.phi:
             sense = State(
                 self.drive, CrankAngle.of(self.within), self.within, self.pin_friction
-            ).guide_sense
+            ).guide_sign
         return np.where(sense >= 0, 1.0, -1.0)
 
     @property
@@ -549,7 +549,7 @@ class State(Chambers):
             if drive.index is None:
                 raise NoSolutionError(drive.locks(float(self.phi[is_locked][0])))
             denominator = np.where(is_locked, np.nan, denominator)
-        return self.guide_sense / denominator
+        return self.guide_sign / denominator
 
     M_knuckle = value(
         "M_An",
@@ -605,7 +605,7 @@ class State(Chambers):
         radial = None if self.P is None else self.mechanism.radial(self.posed)
         if radial is None:
             return None
-        push = self.along_rod * radial + self._rod_side * self.angle.sin
+        push = self.along_stroke * radial + self._rod_side * self.angle.sin
         if self.drive.cylinder.link_rod is not None:
             push = push - self._knuckle_inertia_on_pin.real
         if rod is None:
@@ -625,7 +625,7 @@ class State(Chambers):
     def _output(self) -> Any:
         """Force in N (moment in N m) at the output, less friction, from which virtual work gives T and M."""
         if self.mechanism.slides:
-            return self.along_rod
+            return self.along_stroke
         return self.M_out
 
     @cached_property
@@ -704,7 +704,7 @@ class State(Chambers):
         return self.filled(sliding + rubbing)
 
     @cached_property
-    def along_rod(self) -> Number:
+    def along_stroke(self) -> Number:
         """Component S cos ψ of the rod force along the stroke line in N: the piston force less all friction."""
         if self.P is None or self.drive.cylinder.friction is None:
             return self.P
@@ -735,12 +735,12 @@ class State(Chambers):
         return push - sum(self.losses.values(), start=0.0)
 
 
-def on_pin(state: State) -> Vector:
+def crank_pin_force(state: State) -> Vector:
     """Return the force of the rod on the crank pin in N, in the frame of the throw."""
     return Vector(state.D - state.drive.rod_centrifugal_force, state.tangential_at_pin)
 
 
-def on_crosshead_pin(state: State) -> Vector:
+def crosshead_pin_force(state: State) -> Vector:
     """Return the force of the crosshead on its pin in N: components along P and along N, with their signs.
 
     Inertia and weight of the rod are excluded: along the stroke line it is the rod load less friction.
@@ -748,7 +748,7 @@ def on_crosshead_pin(state: State) -> Vector:
     drive, masses = state.drive, state.drive.cylinder.masses
     of_rod = drive.mass - masses.parts if masses else 0.0
     along, across = drive.weight_of(of_rod)
-    push = state.along_rod + state.b * of_rod if drive.has_inertia else state.along_rod
+    push = state.along_stroke + state.b * of_rod if drive.has_inertia else state.along_stroke
     return Vector(push - along, state.N - drive.guide_weight + across)
 
 

@@ -22,6 +22,7 @@ class Column(NamedTuple):
     alone: significant digits if each value has its own scale, as errors over many powers of ten; 0 for a common scale.
     size: the largest value of the whole curve, if the values here are only rounding errors relative to it; else 0.
     minor: for programs, and for people who name it: 0 at every angle, or the same as another row.
+    for_entry: see `Quantity`.
     """
 
     id: str
@@ -35,6 +36,7 @@ class Column(NamedTuple):
     alone: int = 0
     size: float = 0.0
     minor: bool = False
+    for_entry: bool = False
 
 
 class KeyValue(NamedTuple):
@@ -42,7 +44,7 @@ class KeyValue(NamedTuple):
 
     noise: the value is only rounding error, printed with digits in JSON only; heading: see `Quantity`; minor: for
     programs, and for people who name it, as what other rows have, too; side: `before` where the extreme is the limit
-    before a jump, while tables show what is just after it.
+    before a jump, while tables show what is just after it; for_entry: see `Quantity`.
     """
 
     id: str
@@ -56,6 +58,7 @@ class KeyValue(NamedTuple):
     heading: str = ""
     minor: bool = False
     side: str = ""
+    for_entry: bool = False
 
 
 class LeftOut(NamedTuple):
@@ -273,12 +276,12 @@ _NUMBERED = re.compile(r"(.*\D)(\d{1,9})$")
 Grouped = TypeVar("Grouped")
 
 
-def together(names: Sequence[str]) -> str:
+def joined_names(names: Sequence[str]) -> str:
     """Return several names as one text; names that differ only in a number are listed by their numbers.
 
-    >>> together(["cylinder 1", "cylinder 2", "cylinder 3", "cylinder 6"]), together(["HP", "LP"])
+    >>> joined_names(["cylinder 1", "cylinder 2", "cylinder 3", "cylinder 6"]), joined_names(["HP", "LP"])
     ('cylinders 1–3, 6', 'HP, LP')
-    >>> together(["pin of left 1", "pin of right 1", "pin of left 2", "pin of right 2"])
+    >>> joined_names(["pin of left 1", "pin of right 1", "pin of left 2", "pin of right 2"])
     'pin of left 1, 2, right 1, 2'
     """
     texts = []
@@ -353,7 +356,7 @@ def shown_once(report: Report) -> Report:
 
     parts = []
     for group in groups:
-        name = together([str(part.name) for part in group])
+        name = joined_names([str(part.name) for part in group])
         warnings = dict.fromkeys(chain.from_iterable(part.warnings for part in group))
         parts.append(group[0]._replace(name=name, warnings=tuple(warnings)))
     is_alone = len(parts) == 1 and report.whole is None

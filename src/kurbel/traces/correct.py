@@ -85,6 +85,7 @@ class Trace(Indivisible):
     by_steam: ClassVar[bool] = False
     compresses: ClassVar[bool] = False
     traced: ClassVar[Literal[True]] = True
+    by_stroke: ClassVar[Literal[False]] = False
     exponents: ClassVar[tuple[Number, ...]] = ()
 
     def rules_of_events(self, valve_compresses: Truth | None) -> Iterator[Rule]:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Indices
 from kurbel.declared.record import Record, Rule, field
 
 
@@ -80,6 +80,11 @@ class Released(NamedTuple):
     total: float
 
     @property
+    def supplied(self) -> None:
+        """The heat of the fuel: a trace does not show it."""
+        return None
+
+    @property
     def burnt(self) -> Array:
         """The burnt share x_b (n,) at its angles: 0 before combustion, 1 after it."""
         burnt = (self.heat - self.heat[self.first]) / self.total
@@ -87,11 +92,11 @@ class Released(NamedTuple):
         burnt[self.last :] = 1.0
         return burnt
 
-    def burnt_at(self, after: Array) -> Array:
-        """Return the burnt share x_b at so many degrees after the firing dead centre."""
+    def burnt_at(self, after: Array, machine: Indices | None = None) -> Array:
+        """Return the burnt share x_b at so many degrees after the firing dead centre; a trace is of one machine."""
         return np.interp(after, self.angles, self.burnt)
 
-    def rate_at(self, after: Array) -> Array:
+    def rate_at(self, after: Array, machine: Indices | None = None) -> Array:
         """Return the heat in J released over the degree around these angles, after the firing dead centre."""
         ahead = np.interp(after + CHORD / 2, self.angles, self.heat)
         behind = np.interp(after - CHORD / 2, self.angles, self.heat)

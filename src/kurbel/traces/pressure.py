@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from kurbel.arrays import Array, Number
+from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import within_cycle
 from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.arithmetic import unless_cancelled
@@ -39,6 +39,7 @@ class TracePressure:
     """
 
     traced: ClassVar[Literal[True]] = True
+    by_stroke: ClassVar[Literal[False]] = False
 
     def __init__(self, trace: Trace, setting: Setting) -> None:
         self.trace, self.setting = trace.over(setting.cycle), setting
@@ -79,8 +80,11 @@ class TracePressure:
 
     # the rise of pressure
 
-    def rise(self, degrees: Array) -> Array:
-        """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each."""
+    def rise(self, degrees: Array, machine: Indices | None = None) -> Array:
+        """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each.
+
+        A trace is of one machine.
+        """
         ahead, behind = (self.at(at, at) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
         return (ahead - behind) / _CHORD
 

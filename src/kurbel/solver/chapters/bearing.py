@@ -218,7 +218,7 @@ class Bearing(Results):
             return None
         shape = _oil_film().shape_of(films, self.key, *self.size)
         pieces, _, loads = self._cycle
-        turning = pieces.carried(self._turning(), self._common)
+        turning = pieces.resampled(self._turning(), self._common)
         pressed = self._pressing(loads[1])
         return _oil_film()(shape, pieces, pressed, turning, self.omega, self.count)
 
@@ -315,7 +315,7 @@ def with_magnitude(
 def mean_of_high(pieces: Pieces, load: Array, largest: Array) -> Array:
     """Return the mean load in N over the time in which it exceeds half the largest, (machines,)."""
     cut = pieces.split(pieces.zeros(load - pieces.of(largest / 2), largest))
-    load = cut.carried(load, pieces)
+    load = cut.resampled(load, pieces)
     # a piece is above as a whole, which its mean decides; the weights of a mean sum to 2
     above = cut.rule.weights @ load > cut.of(largest)
     time, sums = cut.integral(np.stack((np.ones_like(load), load)) * above)

@@ -32,7 +32,7 @@ from kurbel.solver.chapters.bearing import Bearing, Frames, Size, with_magnitude
 from kurbel.solver.effort import position
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
-from kurbel.solver.state import State, on_crosshead_pin, on_pin
+from kurbel.solver.state import State, crank_pin_force, crosshead_pin_force
 from kurbel.solver.throw_loads import pin_load, resampled, state_at
 from kurbel.solver.vector import Force
 
@@ -60,11 +60,11 @@ class RodPin(Bearing):
         frames: dict[str, Any] = {}
         line: Any
         if self._pin == "crank_pin":
-            D, T = on_pin(state)
+            D, T = crank_pin_force(state)
             frames["throw"] = -D + 1j * T
             line = frames["throw"] * (state.angle.cos + 1j * state.angle.sin)
         else:
-            along, across = on_crosshead_pin(state)
+            along, across = crosshead_pin_force(state)
             line = along - 1j * across
         frames["engine"] = line * bank
         frames["rod"] = line * (cos_psi + 1j * sin_psi)

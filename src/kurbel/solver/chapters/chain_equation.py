@@ -90,7 +90,7 @@ class ChainEquation:
 
     def known(self, pieces: Pieces) -> Array:
         """Return the torques on the masses, and J ω_n² of the one under the load: less by so much, it stands still."""
-        torques = pieces.carried(self._driving, self._source)
+        torques = pieces.resampled(self._driving, self._source)
         return np.concatenate(
             (torques, np.broadcast_to(pieces.of(self._height), (1, *torques.shape[1:])))
         )

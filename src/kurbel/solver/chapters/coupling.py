@@ -20,7 +20,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Number
 from kurbel.errors import NoSolutionError
-from kurbel.machine.turning import Coupling
+from kurbel.machine.shaft_side import Coupling
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces

@@ -179,7 +179,7 @@ class FilmEquation:
 
     def known(self, pieces: Pieces) -> Array:
         """Return both parts of K F, and τ."""
-        course = pieces.carried(self._course, self._pieces)
+        course = pieces.resampled(self._course, self._pieces)
         load_share = pieces.of(self.share)
         return course * np.stack((load_share, load_share, np.ones_like(load_share)))[:, None]
 
@@ -324,7 +324,7 @@ class OilFilm(Results):
         if self._count is None and self.obstacle:
             return {}
         # the extremes
-        parts = np.concatenate((self.y, self.pieces.carried(self._course, self._source)))
+        parts = np.concatenate((self.y, self.pieces.resampled(self._course, self._source)))
         largest, degrees = highest(self.pieces, parts, self._peaks)
         square = largest[0]
         eccentricity = np.sqrt(square / (1 + square))
@@ -356,8 +356,8 @@ class OilFilm(Results):
         """Return friction power in W and side flow in m³/s at the nodes of pieces."""
         shape = self.shape.of(pieces)
         omega = pieces.of(self._omega)
-        y = pieces.carried(self.y, self.pieces)
-        real, imaginary, turning = pieces.carried(self._course, self._source)
+        y = pieces.resampled(self.y, self.pieces)
+        real, imaginary, turning = pieces.resampled(self._course, self._source)
         pressed = real + 1j * imaginary
         seen = along_load(y, pressed)
         along, across = mobility(seen.real, seen.imag, shape.lam, shape.finite)

@@ -375,7 +375,7 @@ class ShaftVibration(Results):
             return None
         pieces, samples = motion.pieces, motion.samples
         # what the torques put in is what the dampers and the load take out
-        power = pieces.carried(driven, effort.pieces) * equation.vibration(samples, pieces)
+        power = pieces.resampled(driven, effort.pieces) * equation.vibration(samples, pieces)
         return SteadyMotion(
             pieces,
             equation.torques(samples, pieces) / self.vibration.ratios[:, None, None],
