@@ -70,6 +70,7 @@ BEST = {
     "modes": "marine-diesel",
     "orders": "marine-diesel",
     "reuleaux": "mill-engine",
+    "rod-load": "compressor-two-stage",
     "throw-stress": "gas-engine",
     "valve-ellipse": "mill-engine",
     "zeuner": "mill-engine",
