@@ -38,6 +38,7 @@ TEACHING = {
     "mill-engine": "zeuner",
     "odd-fire-v6": "free-orders",
     "offset-engine": "mechanism",
+    "plunger-pump": "flow",
     "petrol-engine": "card-volume",
     "press": "effort",
     "pumpjack": "mechanism",

@@ -171,7 +171,7 @@ def _constants(row: dict[str, Any]) -> bool:
 
 def _deviation(printed: str, figures: Sequence[float]) -> str:
     try:
-        pairs = list(zip([float(one) for one in printed.split(", ")], figures, strict=True))
+        pairs = list(zip([float(word) for word in printed.split(", ")], figures, strict=True))
     except ValueError:
         return ""
     # of several the worst is shown
@@ -428,15 +428,15 @@ def _redtenbacher() -> str:
 def _valves() -> str:
     rows = (
         (
-            one.source,
-            one.of,
-            one.printed,
-            _shown(one.computed),
-            one.unit,
-            _of_print(one),
-            _judged_print(one),
+            print.source,
+            print.of,
+            print.printed,
+            _shown(print.computed),
+            print.unit,
+            _of_print(print),
+            _judged_print(print),
         )
-        for one in PRINTS
+        for print in PRINTS
     )
     text = (
         "Dingler's Polytechnisches Journal and Bourne's Catechism of the Steam Engine. Infinite rods, except for the "

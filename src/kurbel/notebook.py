@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kurbel.declared.unit_systems import messages_in
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.machine_file.reader import machine_of
@@ -61,7 +62,8 @@ def draw(
     from kurbel.pictures.picture_source import PictureOptions
     from kurbel.pictures.pictures import pictures
 
-    return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
+    with messages_in(units):
+        return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
 
 
 def as_html(shown: solved.Case | Results) -> str:

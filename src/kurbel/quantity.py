@@ -20,6 +20,10 @@ V = TypeVar("V")
 
 NOISE_POWER = -14
 """A residual below this power of ten is rounding error, which differs between processors."""
+ENTRY_DIGITS = 6
+"""Significant digits of a value that people write into a machine file again."""
+ENTRY_DECIMALS = 4
+"""Most decimals of such an angle in degrees."""
 GREEK = {
     "φ": "phi", "ψ": "psi", "θ": "theta", "Θ": "Theta", "ω": "omega", "δ": "delta", "Δ": "d", "λ": "lambda", "μ": "mu",
     "ν": "nu", "η": "eta", "π": "pi", "ρ": "rho", "ε": "eps", "γ": "gamma", "α": "alpha", "β": "beta", "κ": "kappa",
@@ -62,6 +66,7 @@ class Quantity(NamedTuple):
     `wanted_large`: a bound on it is one from below, as on every smallest value.
     `heading`: of the key values among which it is listed for people; see `Heading`.
     `of_book`: an approximation of the books, which people are shown where approximations are requested.
+    `for_entry`: people write it into the machine file again, so that it is printed with more digits.
     `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
     """
 
@@ -79,6 +84,7 @@ class Quantity(NamedTuple):
     peak: bool = False
     on_request: tuple[str, ...] = ()
     wanted_large: bool = False
+    for_entry: bool = False
     gauge: bool = False
     mark: str = ""
     group: str = ""

@@ -9,6 +9,7 @@ import pytest
 
 import kurbel
 from command import answer, printed, run
+from kurbel.designs.uncertainty import given_uncertainty
 
 PSI, AT = 0.45359237 * 9.80665 / 0.0254**2, 98066.5
 INCH = 0.0254
@@ -242,10 +243,10 @@ bore: 150 mm
 indicator: {head_end: {compressor: {suction: 0 bar, delivery: 6 bar, clearance: 0.05}}}
 gas: {inlet_temperature: 20 °C, molar_mass: 28.96 g/mol, isentropic_exponent: 1.4}
 """
-    words = ("delivery", "-", "--key-values", "mass_flow")
-    given = ("--uncertainty", "gas.inlet_temperature=")
-    by_degrees = run(*words, given[0], given[1] + "2 °C", text=machine).stdout
-    assert by_degrees == run(*words, given[0], given[1] + "2 K", text=machine).stdout
+    for spread in ("2 °C", "2 K", "3.6 °F"):
+        inputs = given_uncertainty(kurbel.loads(machine), [("gas.inlet_temperature", spread)])
+        assert inputs is not None
+        assert inputs.spreads.tolist() == pytest.approx([2.0], rel=1e-12)
     vary = "gas.inlet_temperature=normal(20 °C, {})"
     swept = ("sweep", "-", "--sample", "3", "--columns", "mass_flow", "-f", "csv", "--vary")
     by_degrees = printed(*swept, vary.format("2 °C"), text=machine)

@@ -9,7 +9,7 @@ import numpy as np
 
 from kurbel.declared.forms.figures import MACHINE, Bound, Expected, scoped
 from kurbel.declared.reading import text_in_one_line
-from kurbel.declared.unit_systems import SI, convert
+from kurbel.declared.unit_systems import SI, convert, requested_system, shown_unit
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
@@ -148,7 +148,7 @@ def _compared(
         _margin(quantity, bound, value),
         "PASS" if is_met else "FAIL",
     )
-    unit = bound.unit
+    unit = _unit_of(bound, quantity.kind, value)
     number = 100 * value if unit == "%" else float(convert(value, quantity.kind, unit))
     return CheckEntry(
         name,
@@ -216,9 +216,10 @@ def _compared_with_expected(
 ) -> tuple[str, str, bool]:
     """Return the verdict on a value in SI, what is expected, and whether it is met."""
     kind = quantity.kind
+    unit = _unit_of(expected, kind, value)
     limit = expected.text
-    if not limit:
-        limit = f"{_shown(expected.low, kind, '')} to {_shown(expected.high, kind, '')}"
+    if not limit or unit != expected.unit:
+        limit = f"{_shown(expected.low, kind, unit)} to {_shown(expected.high, kind, unit)}"
     too_small_by = expected.low - value
     too_large_by = value - expected.high
     deviation = max(too_small_by, too_large_by)
@@ -226,18 +227,19 @@ def _compared_with_expected(
     verdict = "PASS"
     if not is_met:
         size = "small" if too_small_by > too_large_by else "large"
-        verdict = f"FAIL, {_shown(deviation, kind, expected.unit)} too {size}"
-    shown = _shown_value(quantity, value, expected.unit)
+        verdict = f"FAIL, {_shown(deviation, kind, unit, is_difference=True)} too {size}"
+    shown = _shown_value(quantity, value, unit)
     return f"{shown}, expected {limit}  {verdict}", limit, is_met
 
 
 def _compared_with_bound(quantity: Quantity, bound: Bound, value: float) -> tuple[str, str, bool]:
     """Return the verdict on a value in SI, the bound, and whether it is met."""
-    shown = _shown_value(quantity, value, bound.unit)
+    unit = _unit_of(bound, quantity.kind, value)
+    shown = _shown_value(quantity, value, unit)
     counts_by_magnitude = quantity.id.endswith("_residual")
     if counts_by_magnitude and not quantity.is_noise(value):
         shown = f"|{shown}|"
-    shown_bound = _shown(bound, quantity.kind, bound.unit)
+    shown_bound = _shown(bound, quantity.kind, unit)
     met_sign, broken_sign = ("≥", "<") if quantity.bounded_below else ("≤", ">")
     limit = f"{met_sign} {shown_bound}"
     if breaks(quantity, bound, value):
@@ -259,11 +261,19 @@ def breaks(quantity: Quantity, bound: float, value: float) -> bool:
     return excess > _ROUNDING * abs(bound)
 
 
-def _shown(value: float, kind: str, unit: str) -> str:
-    """Return a value with its unit, which is that of the file if it has one."""
+def _unit_of(figure: Bound | Expected, kind: str, value: float) -> str:
+    """Return the unit in which a figure is compared: that of the file, or of the unit system that is requested."""
+    system = requested_system()
+    if not system or figure.unit == "%":
+        return figure.unit
+    return shown_unit(kind, system, value)
+
+
+def _shown(value: float, kind: str, unit: str, is_difference: bool = False) -> str:
+    """Return a value with its unit, which is that of SI where it is ''."""
     if unit == "%":
         return f"{100 * value:.9g} %"
-    return f"{convert(value, kind, unit):.9g} {unit or SI[kind]}".rstrip()
+    return f"{convert(value, kind, unit, is_difference):.9g} {unit or SI[kind]}".rstrip()
 
 
 def _beyond_by_sign(
@@ -292,7 +302,7 @@ def _beyond_by_sign(
     with suppress(KurbelError):
         for where, value in _values(case, other):
             if -value * sign > abs(bound) * (1 + _ROUNDING):
-                size = _shown(value, quantity.kind, bound.unit)
+                size = _shown(value, quantity.kind, _unit_of(bound, quantity.kind, value))
                 text = f"{other} = {size} is beyond it with the other sign; {advice}  ({where})"
                 yield CheckEntry(str(path[-1]), text, "warning", path)
 

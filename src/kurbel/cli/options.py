@@ -9,6 +9,7 @@ import click
 
 from kurbel.cli.group import KurbelCommand
 from kurbel.declared.numerals import parse_ratio
+from kurbel.declared.unit_systems import messages_in
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
 from kurbel.quantity import Lists, ambiguity
@@ -360,11 +361,24 @@ part_options = stacked(
         help="Print everything, also on a terminal with too few lines for it.",
     ),
 )
+
+
+def _write_messages_in(
+    context: click.Context, parameter: click.Parameter, system: str | None
+) -> str | None:
+    """Write the messages of a command in the unit system that is requested, and return it."""
+    if system:
+        context.with_resource(messages_in(system))
+    return system
+
+
 units_option = click.option(
     "--units",
     type=click.Choice(["si", "metric", "technical", "imperial"]),
+    callback=_write_messages_in,
+    is_eager=True,  # the other options have messages, too
     help="metric: mm, bar, kN, the default of tables and workbooks; technical: mm, kgf, at, as the old books; "
-    "imperial: in, lbf, psi; si: the default of csv and json.",
+    "imperial: in, lbf, psi, deg F; si: the default of csv and json.",
 )
 
 

@@ -128,9 +128,10 @@ def plot(**options: Any) -> None:
     said="json: every finding with its place; junit: XML that CI services read. ",
 )
 @click.option("--quiet", "-q", is_flag=True, help="Print what FAILs, and nothing else.")
+@units_option
 @output_option
 @width_option
-def check(format: str | None, file_name: str | None, **options: Any) -> int:
+def check(format: str | None, file_name: str | None, units: str | None, **options: Any) -> int:
     """Check the machine in each FILE: list what will be computed, what is left out and why.
 
     Where the file gives 'limits', hold the key values to them, in every one of its 'cases'; where it gives 'expect',

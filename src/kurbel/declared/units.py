@@ -200,9 +200,14 @@ KINDS = {
         "psi ft/s",
     ),
     "density": Kind(
-        1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3", written="1000 kg/m3"
+        1e-9,
+        1e9,
+        "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3",
+        "kg/m^3",
+        imperial="lb/ft^3",
+        written="1000 kg/m3",
     ),
-    "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", written="20 °C"),
+    "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", imperial="°F", written="20 °C"),
     "flow": Kind(
         0,
         1e18,

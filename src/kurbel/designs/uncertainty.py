@@ -310,7 +310,7 @@ def _with_table(
         quantity, kind = uncertain.answer.quantity, uncertain.answer.kind
         names.append((quantity.id, quantity.symbol, unit or "1"))
         values.append(convert(uncertain.value, kind, unit))
-        spreads.append(convert(uncertain.spread, kind, unit))
+        spreads.append(convert(uncertain.spread, kind, unit, is_difference=True))
         samples.append(uncertain.sample or None)
     columns = [
         Column("value", "value", "value", "", tuple(values), alone=6),

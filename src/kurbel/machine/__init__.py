@@ -397,6 +397,9 @@ class Machine(Record):
         for index, cylinder in enumerate(self.cylinders):
             for rule in self._rules_of_cylinder(cylinder):
                 yield rule.below("cylinders", index)
+        if self.pump:
+            pistons = [piston for cylinder in self.cylinders for piston in cylinder.pistons]
+            yield from self.pump.rules_of(pistons)
         if self.oil_film:
             frictions = [cylinder.friction for cylinder in self.cylinders]
             for rule in self.oil_film.rules_beside(self.crankshaft, frictions):

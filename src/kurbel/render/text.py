@@ -9,7 +9,7 @@ from typing import NamedTuple
 from unicodedata import combining, east_asian_width, normalize
 
 from kurbel.declared.unit_systems import SYSTEMS
-from kurbel.quantity import GREEK
+from kurbel.quantity import ENTRY_DECIMALS, ENTRY_DIGITS, GREEK
 from kurbel.tables.tables import CellValue
 
 # numbers
@@ -293,6 +293,16 @@ class Look(NamedTuple):
         if self.digits:
             return self.value(value)
         return self.number(angle(value))
+
+    def value_for_entry(self, value: float) -> str:
+        """Return a value with the digits with which people write it into a machine file."""
+        return self.value(value, ENTRY_DIGITS)
+
+    def angle_for_entry(self, value: float) -> str:
+        """Return an angle with the decimals with which people write it into a machine file."""
+        if self.digits:
+            return self.value(value)
+        return self.number(angle(value, ENTRY_DECIMALS))
 
     def degrees(self, value: float) -> str:
         """Return an angle with its unit."""

@@ -140,7 +140,7 @@ def _state_on(drive: Drive, pieces: Pieces) -> State:
 
     These are computed once.
     """
-    what_may_vary = (drive.mechanism, drive.cylinder.timed_pistons, drive.machine.ambient)
+    what_may_vary = (drive.mechanism, drive.pistons, drive.machine.ambient)
     if drive.count is None or varies(what_may_vary):
         return State.on(drive, pieces)
     first = State.on(drive, pieces.taken(pieces.machine == 0))

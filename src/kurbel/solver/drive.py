@@ -15,7 +15,7 @@ from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.batch import taken
 from kurbel.machine.cylinder import crank_lag
-from kurbel.machine.parts import GasOnRings, Rings
+from kurbel.machine.parts import GasOnRings, Piston, Rings
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas
@@ -242,16 +242,26 @@ class Drive:
     # pressures
 
     @cached_property
+    def pistons(self) -> tuple[Piston, ...]:
+        """Its pistons, with the cards that a valve and a compressible liquid give them."""
+        pistons = self.cylinder.timed_pistons
+        if self.machine.pump is None:
+            return pistons
+        liquid = self.machine.pump.liquid
+        return tuple(liquid.compressed(piston) for piston in pistons)
+
+    @cached_property
     def gas(self) -> tuple[PistonGas, ...]:
         """Pressures on the pistons that have an indicator."""
         gases = []
-        for number, piston in enumerate(self.cylinder.timed_pistons):
+        for number, piston in enumerate(self.pistons):
             if piston.indicator:
                 turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
                 repeats, ambient = self.revolutions // turns, self.machine.ambient
-                gases.append(
-                    PistonGas(piston, self.mechanism, 360.0 * turns, ambient, repeats, self.count)
+                gas = PistonGas(
+                    piston, self.mechanism, 360.0 * turns, ambient, repeats, self.count, number
                 )
+                gases.append(gas)
         return tuple(gases)
 
     @property

@@ -22,6 +22,7 @@ class Column(NamedTuple):
     alone: significant digits if each value has its own scale, as errors over many powers of ten; 0 for a common scale.
     size: the largest value of the whole curve, if the values here are only rounding errors relative to it; else 0.
     minor: for programs, and for people who name it: 0 at every angle, or the same as another row.
+    for_entry: see `Quantity`.
     """
 
     id: str
@@ -35,6 +36,7 @@ class Column(NamedTuple):
     alone: int = 0
     size: float = 0.0
     minor: bool = False
+    for_entry: bool = False
 
 
 class KeyValue(NamedTuple):
@@ -42,7 +44,7 @@ class KeyValue(NamedTuple):
 
     noise: the value is only rounding error, printed with digits in JSON only; heading: see `Quantity`; minor: for
     programs, and for people who name it, as what other rows have, too; side: `before` where the extreme is the limit
-    before a jump, while tables show what is just after it.
+    before a jump, while tables show what is just after it; for_entry: see `Quantity`.
     """
 
     id: str
@@ -56,6 +58,7 @@ class KeyValue(NamedTuple):
     heading: str = ""
     minor: bool = False
     side: str = ""
+    for_entry: bool = False
 
 
 class LeftOut(NamedTuple):

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.declared.unit_systems import show_range
 from kurbel.mechanisms.setting import Setting
 from kurbel.traces.correct import (
     Exponent,
@@ -315,7 +316,7 @@ class _Sizes:
         self.least_of_all = _SMALLEST_PEAK + self.ambient if four_strokes else 0.0
         self.most = _LARGEST_PEAK
         self.least = self.least_of_all
-        self.range = "cylinders peak at 1 to 300 bar"
+        self.range = f"cylinders peak at {show_range(_SMALLEST_PEAK, _LARGEST_PEAK, 'pressure')}"
         if clearance:
             self.compressed = self.ambient * (1 + 1 / clearance) ** _AIR
             self.least = _TO_COMPRESSION[0] * self.compressed

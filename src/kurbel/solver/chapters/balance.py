@@ -217,6 +217,7 @@ class MachineBalance(Results):
         "unbalance",
         "Vector sum of the given counterweights, mass times radius",
         lambda balance: balance.sum_of_counterweights(),
+        for_entry=True,
     )
     # it cancels the forward rotating vector of order 1
     _direction = "Its direction from throw 1"
@@ -225,24 +226,35 @@ class MachineBalance(Results):
         "unbalance",
         "Counterweight balancing all rotating and half of the reciprocating mass",
         lambda balance: balance.shown(abs(balance.forward)),
+        for_entry=True,
     )
     counterweight_best_angle = value(
-        "α_1", "angle", _direction, lambda balance: balance.angle_of(-balance.forward)
+        "α_1",
+        "angle",
+        _direction,
+        lambda balance: balance.angle_of(-balance.forward),
+        for_entry=True,
     )
     counterweight_least = value(
         "u_min",
         "unbalance",
         "Counterweight that minimises the largest unbalanced force",
         lambda balance: balance.shown(abs(balance.least)),
+        for_entry=True,
     )
     counterweight_least_angle = value(
-        "α_min", "angle", _direction, lambda balance: balance.angle_of(balance.least)
+        "α_min",
+        "angle",
+        _direction,
+        lambda balance: balance.angle_of(balance.least),
+        for_entry=True,
     )
     share_best = value(
         "c_min",
         "ratio",
         "Share of the reciprocating mass that this counterweight balances",
         lambda balance: balance.share_of_least(),
+        for_entry=True,
     )
     F_free_best = value(
         "F_min",
@@ -253,7 +265,7 @@ class MachineBalance(Results):
 
     _locomotive = Heading("Locomotive")
     counterweight_wheel = value(
-        "u_R", "unbalance", "Largest counterweight of a wheel, mass times radius"
+        "u_R", "unbalance", "Largest counterweight of a wheel, mass times radius", for_entry=True
     )
     train_speed = value("v_z", "velocity", "Speed of the train")
     traction_variation = value("F_z", "force", "Largest variation of the tractive force")
