@@ -104,9 +104,7 @@ class SampledCylinder:
         """Largest last coefficients of the Chebyshev series on pieces that could be halved, over the largest value."""
         values = np.stack(_known(self.pieces, _smooth(self.samples)))
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
-        tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[
-            :, self.pieces.half > NARROWEST
-        ]
+        tails = np.abs(self.pieces.rule.tail @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
         return float((tails.max(axis=1) / size).max())
 
     # extremes and zeros
