@@ -132,7 +132,8 @@ YOKE = """
 LOSSES = """
 {speed: 60 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, efficiency: 0.9,
  indicator: {head_end: {unit: bar, expansion: [[0, 8], [0.4, 8], [1, 2]], compression: [[1, 0.2], [0, 1]]}},
- tandem: [{bore: 200 mm, indicator: {head_end: {constant: {expansion: -0.4 bar, compression: 8 bar}}}}],
+ tandem: [{bore: 200 mm, indicator: {head_end: {constant: {expansion: -0.4 bar, compression: 8 bar, clearance: 0.3}}}}],
+ pump: {liquid: {bulk_modulus: 9 MPa}},
  force: {unit: kN, points: [[0, 6, 0.5], [0.3, 4, 0.5], [0.3, 7, 1], [1, 7, 1]]}, ram_force: {return: -300 N},
  flywheel: {inertia: 900 kg m2}}
 """
@@ -150,7 +151,7 @@ DRIVEN = """
         pytest.param(EXACT, id="exact rod"),
         pytest.param(RUBBING, id="pins and rings by gas"),
         pytest.param(YOKE, id="yoke"),
-        pytest.param(LOSSES, id="efficiency and a load that helps"),
+        pytest.param(LOSSES, id="efficiency, a load that helps and a soft liquid"),
         pytest.param(DRIVEN, id="driven rocker with forces and a load by harmonics"),
     ],
 )

@@ -120,18 +120,18 @@ def test_key_values_of_other_commands_and_limits() -> None:
 
 def test_where_sort_top_and_pareto() -> None:
     words = ("--vary", "rod_ratio=3:6:0.5", "--columns", "c_max,b_max")
-    every = {one["row"]: one for one in rows(*words)}
+    every = {row["row"]: row for row in rows(*words)}
     below = rows(*words, "--where", "b_max < 13.5 m/s2")
     assert [one["row"] for one in below] == [
         row for row, one in every.items() if one["b_max_m/s^2"] < 13.5
     ]
-    assert [one["row"] for one in rows(*words, "--where", "rod_ratio >= 5")] == [5, 6, 7]
-    assert [one["row"] for one in rows(*words, "--sort", "c_max", "--top", "2")] == [7, 6]
-    assert [one["row"] for one in rows(*words, "--sort", "-c_max", "--top", "1")] == [1]
+    assert [row["row"] for row in rows(*words, "--where", "rod_ratio >= 5")] == [5, 6, 7]
+    assert [row["row"] for row in rows(*words, "--sort", "c_max", "--top", "2")] == [7, 6]
+    assert [row["row"] for row in rows(*words, "--sort", "-c_max", "--top", "1")] == [1]
     # a longer rod betters both
-    assert [one["row"] for one in rows(*words, "--pareto", "c_max,b_max")] == [7]
+    assert [row["row"] for row in rows(*words, "--pareto", "c_max,b_max")] == [7]
     # more of c_max against less of b_max: nothing betters anything
-    assert [one["row"] for one in rows(*words, "--pareto", "-c_max,b_max")] == [1, 2, 3, 4, 5, 6, 7]
+    assert [row["row"] for row in rows(*words, "--pareto", "-c_max,b_max")] == [1, 2, 3, 4, 5, 6, 7]
 
 
 def test_a_key_value_is_requested_of_one_cylinder_as_it_is_called_in_the_head() -> None:

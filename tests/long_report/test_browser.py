@@ -136,6 +136,6 @@ def test_the_validator_of_the_w3c_has_nothing_to_say(tmp_path: Path) -> None:
         *map(str, files),
     ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    said = [one["message"] for one in json.loads(done.stdout)["messages"]]
+    said = [message["message"] for message in json.loads(done.stdout)["messages"]]
     # of CSS it does not know what browsers have had since 2016
     assert [one for one in said if "paint-order" not in one] == []

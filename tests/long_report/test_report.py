@@ -248,7 +248,7 @@ def test_the_energy_balance_closes_on_the_page() -> None:
     rows = re.search(r'id="energy".*?<tbody>(.*?)</tbody>', page_of("waterworks"), re.DOTALL)
     assert rows
     figures = [
-        number_of(one) for one in re.findall(r'<td class="r">(−?[0-9.]+)</td>', rows.group(1))
+        number_of(match) for match in re.findall(r'<td class="r">(−?[0-9.]+)</td>', rows.group(1))
     ]
     *terms, shaft = figures
     assert sum(terms) == pytest.approx(shaft, rel=1e-3)
@@ -264,7 +264,7 @@ PAGES = [
 
 
 @pytest.mark.parametrize(
-    "names", few([(one,) for one in PAGES], [(PAGES[1],), (PAGES[3],)], map("-".join, PAGES))
+    "names", few([(page,) for page in PAGES], [(PAGES[1],), (PAGES[3],)], map("-".join, PAGES))
 )
 def test_nothing_comes_from_elsewhere_and_nothing_runs(names: tuple[str, ...]) -> None:
     page = page_of(*names)
@@ -365,7 +365,7 @@ def test_differences_are_in_percent(tmp_path: Path) -> None:
     other.write_text("{name: A, stroke: 900 mm, rod_ratio: 5}")
     page = run("report", str(one), str(other)).stdout
     assert f"A (A) is that of {one}; A (B) is that of {other}." in text_in(page)
-    # the heading, and what a reader of screens is told
+    # the heading, and what a reader of screens says
     assert (
         text_in(page).count("A (A). Displacement")
         == text_in(page).count("A (B). Displacement")

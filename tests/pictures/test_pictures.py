@@ -125,7 +125,7 @@ def test_the_card_encloses_the_indicated_work() -> None:
     panel = drawn("compressor", "card-volume")[0].panels[0]
     assert panel.x.unit == "cm^3"
     work = 0.0
-    for curve in (one for one in panel.curves if one.kind == "line"):
+    for curve in (curve for curve in panel.curves if curve.kind == "line"):
         V, p = (np.concatenate(parts) for parts in zip(*curve.pieces()))
         V, p = V / 1e6, p * 1e5
         work += float(trapezoid(p, V))
@@ -194,9 +194,9 @@ def test_a_machine_without_an_oil_film_has_no_path_of_a_journal() -> None:
 
 
 def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:
-    """A point stands as far from the middle as its load is large, in the direction that the column tells."""
+    """A point is as far from the middle as its load is large, in the direction of the column."""
     case, pictures_ = case_of("gas-engine"), drawn("gas-engine", "bearing-loads")
-    assert [one.of for one in pictures_] == [part.name for part in case.bearings.parts]
+    assert [picture.of for picture in pictures_] == [part.name for part in case.bearings.parts]
     for picture, part in zip(pictures_, case.bearings.parts):
         for panel in picture.panels:
             columns = part.at(np.linspace(0.1, 719.9, 500))
@@ -213,7 +213,7 @@ def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:
 def test_modes_are_those_of_holzer_with_their_frequencies() -> None:
     case = case_of("marine-diesel")
     panel = drawn("marine-diesel", "modes")[0].panels[0]
-    curves = [one for one in panel.curves if one.kind == "line"]
+    curves = [curve for curve in panel.curves if curve.kind == "line"]
     for mode, curve in enumerate(curves, 1):
         angles = np.asarray(case.torsion.holzer(mode).angles)
         assert (curve.y == angles / np.abs(angles).max()).all()

@@ -1,4 +1,4 @@
-"""The studies of benchmarks/ still run: each once, as briefly as it can be told to."""
+"""The studies of benchmarks/ still run: each once, as briefly as it can."""
 
 import subprocess
 import sys

@@ -1,6 +1,6 @@
 """What Python may be used for stays: public names with their signatures, and every attribute that the docs name.
 
-Figures are those of the command line: the same machine, the same quantity, whichever way it is asked for.
+Figures are those of the command line: the same machine, the same quantity, whichever way it is computed.
 """
 
 import math
@@ -39,12 +39,12 @@ def test_public_names() -> None:
     assert all(issubclass(getattr(kurbel, name), base) for name, base in CLASSES_ALONE.items())
 
 
-def same(found: Any, told: dict[str, Any]) -> None:
+def same(found: Any, printed: dict[str, Any]) -> None:
     """A key value of Python is that of the command line: value, unit and angle."""
-    value = list(found.value) if isinstance(told["value"], list) else found.value
-    assert value == told["value"]
-    assert (found.unit, found.degrees) == (told["unit"], told.get("at_deg"))
-    assert (found.quantity.id, found.quantity.symbol) == (told["id"], told["symbol"])
+    value = list(found.value) if isinstance(printed["value"], list) else found.value
+    assert value == printed["value"]
+    assert (found.unit, found.degrees) == (printed["unit"], printed.get("at_deg"))
+    assert (found.quantity.id, found.quantity.symbol) == (printed["id"], printed["symbol"])
 
 
 @pytest.mark.parametrize(
@@ -124,15 +124,15 @@ PRESSURE = (
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "message"),
     [
         ("T_mx", "no key value 'T_mx'; did you mean 'T_max'"),
         ("e_K", "this machine has no loss_cross"),
     ],
 )
-def test_a_name_that_is_not_there_is_reported(name: str, told: str) -> None:
+def test_a_name_that_is_not_there_is_reported(name: str, message: str) -> None:
     (cylinder,) = kurbel.solve(kurbel.loads(PLAIN % PRESSURE)).cylinders
-    with pytest.raises(kurbel.KurbelError, match=told):
+    with pytest.raises(kurbel.KurbelError, match=message):
         _ = cylinder[name]
 
 

@@ -130,12 +130,12 @@ def test_loads_of_many_machines_are_those_of_each() -> None:
         "force.constant": ["-25 N", "-20 N", "10 N", "4 N"],
         "ram_force.return": ["-9 N", "-90 N", "5 N", "1 N"],
     }
-    asked = ["load_work", "resistance_work", "P_load_max", "N_peak", "T_max", "dE", "M_mean", "W"]
-    rows = kurbel.sweep(loads(text), varied, asked)
+    ids = ["load_work", "resistance_work", "P_load_max", "N_peak", "T_max", "dE", "M_mean", "W"]
+    rows = kurbel.sweep(loads(text), varied, ids)
     for row in range(4):
         keys = [f"{key}={values[row]}" for key, values in varied.items()]
         single = Case(kurbel.loads(text, overrides=keys))
-        for id in asked:
+        for id in ids:
             expected = single[id].value
             assert rows[id][row] == pytest.approx(expected, rel=1e-12, abs=1e-12), (row, id)
 

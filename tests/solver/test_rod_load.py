@@ -1,4 +1,4 @@
-"""The rod load of compressors (API 618, 6.6), against mpmath, by law, and as a user asks for it."""
+"""The rod load of compressors (API 618, 6.6), against mpmath, by law, and as a user runs it."""
 
 from pathlib import Path
 

@@ -187,7 +187,7 @@ def test_every_order_solves_its_equations(count: int, ground: str) -> None:
                 chain.mass_damping.tolist()
             )
             whole -= frequency**2 * mpmath.diag(chain.inertias.tolist())
-            sides = mpmath.matrix([complex(one) for one in torques[(slice(None), *place)]])
+            sides = mpmath.matrix([complex(torque) for torque in torques[(slice(None), *place)]])
             exact = mpmath.lu_solve(whole, sides)
         wanted = np.array([complex(one) for one in exact])
         assert result[(slice(None), *place)] == pytest.approx(

@@ -21,7 +21,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.accuracy.cards import KNOWN_CARDS, CardProcess, Fractions, StrokeLine, drawn
+from kurbel.accuracy.cards import (
+    KNOWN_CARDS,
+    CardProcess,
+    Fractions,
+    StrokeLine,
+    drawn,
+    of_liquid,
+)
 from kurbel.accuracy.jets import Jet
 from kurbel.accuracy.linkages import RodMotion, Stance, TextbookMotion, motion_of
 from kurbel.accuracy.loads import TextbookLoads
@@ -254,6 +261,10 @@ class TextbookCylinder:
                 shares = np.array([self._share(angle) for angle in events_of(valve, end)])
                 events = Fractions(*(shares if is_head else 1 - shares))
             drawing = drawn(card, lift, turns == 2, self._ambient, events)
+            modulus = machine.pump.liquid.bulk_modulus if machine.pump else None
+            if modulus is not None and len(drawing.lines) == 2:
+                clearance = mpf(getattr(card, "clearance", None) or 0.0)
+                drawing = of_liquid(drawing, clearance, mpf(modulus))
             strokes = 1 + max(line.stroke for line in drawing.lines)
             chambers.append(TextbookChamber(drawing, sign, area, strokes))
         work = sum((chamber.work for chamber in chambers), mpf(0))

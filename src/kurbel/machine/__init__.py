@@ -370,7 +370,11 @@ class Machine(Record):
         except RuleError as error:
             raise RuleError(*error.faults, *faults) from None
         refuse(*faults)
-        return machine
+        if machine.effort is None:
+            return machine
+        # the cycles of a recording
+        effort = machine.effort.of_cycle(machine.revolutions)
+        return machine if effort is machine.effort else replace(machine, effort=effort)
 
     @classmethod
     def faults_of_some(cls, values: ValuesByKey) -> list[Fault]:
@@ -397,6 +401,9 @@ class Machine(Record):
         for index, cylinder in enumerate(self.cylinders):
             for rule in self._rules_of_cylinder(cylinder):
                 yield rule.below("cylinders", index)
+        if self.pump:
+            pistons = [piston for cylinder in self.cylinders for piston in cylinder.pistons]
+            yield from self.pump.rules_of(pistons)
         if self.oil_film:
             frictions = [cylinder.friction for cylinder in self.cylinders]
             for rule in self.oil_film.rules_beside(self.crankshaft, frictions):

@@ -310,13 +310,19 @@ class Constant(Record):
 
     expansion: float = field("pressure", "Pressure while the chamber grows: suction")
     compression: float = field("pressure", "Pressure while the chamber shrinks: delivery")
+    clearance: float | None = field(
+        CLEARANCE_OR_NONE,
+        "Clearance over stroke volume, for the `bulk_modulus` of the liquid",
+        absent="not known, 0 for a compressible liquid",
+        example="0.5",
+    )
 
     @classmethod
-    def of_keys(cls, expansion: float, compression: float) -> Card:
+    def of_keys(cls, expansion: float, compression: float, clearance: float | None = None) -> Card:
         """Return the card with two horizontal lines."""
         suction = CardLine("expansion", (0.0, 1.0), (expansion, expansion), 0)
         delivery = CardLine("compression", (1.0, 0.0), (compression, compression), 1)
-        return Card((suction, delivery))
+        return Card((suction, delivery), clearance=clearance)
 
 
 def _measured() -> type[Measured]:

@@ -19,6 +19,7 @@ from kurbel.quantity import called
 _REFERENCES = {
     "ambient": "absolute",
     "vapour_pressure": "absolute",
+    "suction_pipe": "absolute",
     **dict.fromkeys(("offset", "mean_pressure", "drawn"), ""),
 }
 """Keys whose pressures are not relative to the reference of the indicator: '' for differences of pressure."""

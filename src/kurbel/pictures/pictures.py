@@ -1,11 +1,13 @@
 """The pictures of a cylinder, each a function that yields its panels; the list of all pictures, and their drawing."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import chain, islice, pairwise
 from operator import attrgetter, itemgetter
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,6 +16,7 @@ from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.pictures.constructions import construction, polar_force
+from kurbel.pictures.heat import heat_release
 from kurbel.pictures.machine_pictures import (
     campbell,
     crank_efforts,
@@ -50,6 +53,9 @@ from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.state import State
 from kurbel.tables.frame import equal_parts
 from kurbel.tables.tables import cylinder_meant, grouped, joined_names
+
+if TYPE_CHECKING:
+    from kurbel.pictures.measured import TracePictures
 
 # one cylinder
 
@@ -112,7 +118,7 @@ def _reversals_of_stroke(
     source: Source,
     lines: Sequence[CurveFormula],
     reversals: Sequence[float],
-    breaks: Sequence[float],
+    breaks: Array,
 ) -> Iterator[Mark]:
     """Yield a mark J where the piston force reverses in a stroke: on the inertia line, else on zero."""
     start, end = breaks[0], breaks[-1]
@@ -124,14 +130,13 @@ def _reversals_of_stroke(
             yield Mark(float(state.x[0]), height, PageFigure(Words("J"), at_deg=angle))
 
 
-def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[list[float], str]]:
+def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[Array, str]]:
     """Yield the crank angles at which a stroke begins, bends, or has a point, and ends, and its name."""
     drive = source.results.drive
     cycle, (inner, outer) = drive.cycle, drive.mechanism.dead_centres()
     # twice, since a stroke may go over the end of the cycle
-    bends = list[float]()
-    for angle in (*source.results.breaks, *also):
-        bends += [angle, angle + cycle]
+    angles = np.concatenate((source.results.breaks, also))
+    bends = np.sort(np.concatenate((angles, angles + cycle)))
     ends = set[float]()
     for turn in range(0, int(cycle), 360):
         ends |= {(inner + turn) % cycle, (outer + turn) % cycle}
@@ -139,8 +144,8 @@ def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[list[
     for start, end in pairwise((*in_order, in_order[0] + cycle)):
         is_outward = math.cos(math.radians(start - inner)) > 1 - 1e-9
         name = "Outstroke" if is_outward else "Return stroke"
-        inside = [angle for angle in bends if start < angle < end]
-        yield [start, *inside, end], f"{name} {start:.4g}–{end:.4g}°"
+        inside = bends[(start < bends) & (bends < end)]
+        yield np.concatenate(([start], inside, [end])), f"{name} {start:.4g}–{end:.4g}°"
 
 
 def piston_force_of_crank(source: Source) -> Iterator[Panel]:
@@ -206,6 +211,33 @@ def _volume(gas: PistonGas, number: int, state: State) -> Array:
 def cards_over_volume(source: Source) -> Iterator[Panel]:
     """Pressure over the volume swept in each chamber, with the clearance where that is known."""
     return cards(source, over_volume=True)
+
+
+def measured_cycles(source: Source) -> Iterator[Panel]:
+    """Measured pressure over the crank angle after the dead centre of each chamber: every cycle in a thin line, their
+    mean in a bold one, upright lines at the dead centres."""
+    yield from _of_traces(source, lambda pictures: pictures.over_angle())
+
+
+def measured_lines(source: Source) -> Iterator[Panel]:
+    """Mean measured pressure over the volume of each chamber, both by powers of ten: where p V^n is constant the line
+    is straight. n_c, n_d: exponents of compression and expansion, by the thin lines through the measured ones."""
+    yield from _of_traces(source, lambda pictures: pictures.logarithmic())
+
+
+def _of_traces(
+    source: Source, panels: Callable[[TracePictures], Iterator[Panel]]
+) -> Iterator[Panel]:
+    """Yield panels of the traces of a cylinder, if it has any."""
+    gases = source.results.drive.gas
+    if any(gas.has_trace for gas in gases):
+        yield from panels(_trace_pictures()(gases))
+
+
+def _trace_pictures() -> type[TracePictures]:
+    from kurbel.pictures.measured import TracePictures
+
+    return TracePictures
 
 
 def forces(source: Source) -> Iterator[Panel]:
@@ -321,6 +353,9 @@ PICTURES = (
     ),
     PictureKind("card", "Indicator diagram", "forces", cards),
     PictureKind("card-volume", "Indicator diagram over the volume", "forces", cards_over_volume),
+    PictureKind("trace-cycles", "Measured pressure", "forces", measured_cycles),
+    PictureKind("trace-lines", "Compression and expansion", "forces", measured_lines),
+    PictureKind("heat-release", "Heat release", "forces", heat_release),
     PictureKind("forces", "Forces in the crank train", "forces", forces),
     PictureKind("effort-polar", "Tangential force in polar form", "forces", polar_effort),
     PictureKind("force-polar", "Piston force in polar form", "forces", polar_force),

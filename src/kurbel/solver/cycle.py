@@ -104,9 +104,7 @@ class SampledCylinder:
         """Largest last coefficients of the Chebyshev series on pieces that could be halved, over the largest value."""
         values = np.stack(_known(self.pieces, _smooth(self.samples)))
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
-        tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[
-            :, self.pieces.half > NARROWEST
-        ]
+        tails = np.abs(self.pieces.rule.tail @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
         return float((tails.max(axis=1) / size).max())
 
     # extremes and zeros
@@ -140,7 +138,7 @@ def _state_on(drive: Drive, pieces: Pieces) -> State:
 
     These are computed once.
     """
-    what_may_vary = (drive.mechanism, drive.cylinder.timed_pistons, drive.machine.ambient)
+    what_may_vary = (drive.mechanism, drive.pistons, drive.machine.ambient)
     if drive.count is None or varies(what_may_vary):
         return State.on(drive, pieces)
     first = State.on(drive, pieces.taken(pieces.machine == 0))

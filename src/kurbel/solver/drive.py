@@ -15,7 +15,7 @@ from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.batch import taken
 from kurbel.machine.cylinder import crank_lag
-from kurbel.machine.parts import GasOnRings, Rings
+from kurbel.machine.parts import GasOnRings, Piston, Rings
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas
@@ -30,6 +30,8 @@ _IDLE = 1e-4
 """Mean indicated pressure in Pa that is rounding: such a piston neither drives nor is driven."""
 _DENSE = 600
 """Breaks of a cycle, as at the samples of a trace, from which on its pieces are short enough for 6 nodes."""
+_DENSEST = 200_000
+"""The same for 4 nodes: what cubics miss on so short pieces is rounding."""
 
 
 class ExactRod(NamedTuple):
@@ -222,8 +224,12 @@ class Drive:
             bends.append(Angles(owners, np.mod(ends + between, self.cycle)))
         machine = np.concatenate([angles.machine for angles in bends])
         degrees = np.concatenate([angles.degrees for angles in bends])
-        is_dense = len(degrees) >= _DENSE * count
-        return Pieces.between(Angles(machine, degrees), count, self.cycle, 6 if is_dense else 16)
+        nodes = 16
+        if len(degrees) >= _DENSE * count:
+            nodes = 6
+        if len(degrees) >= _DENSEST * count:
+            nodes = 4
+        return Pieces.between(Angles(machine, degrees), count, self.cycle, nodes)
 
     def centrifugal(self, mass: Number) -> Number:
         """Return the centrifugal force m R ω² in N of a mass in kg at the crank pin; 0 where no speed is given."""
@@ -242,16 +248,26 @@ class Drive:
     # pressures
 
     @cached_property
+    def pistons(self) -> tuple[Piston, ...]:
+        """Its pistons, with the cards that a valve and a compressible liquid give them."""
+        pistons = self.cylinder.timed_pistons
+        if self.machine.pump is None:
+            return pistons
+        liquid = self.machine.pump.liquid
+        return tuple(liquid.compressed(piston) for piston in pistons)
+
+    @cached_property
     def gas(self) -> tuple[PistonGas, ...]:
         """Pressures on the pistons that have an indicator."""
         gases = []
-        for number, piston in enumerate(self.cylinder.timed_pistons):
+        for number, piston in enumerate(self.pistons):
             if piston.indicator:
                 turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
                 repeats, ambient = self.revolutions // turns, self.machine.ambient
-                gases.append(
-                    PistonGas(piston, self.mechanism, 360.0 * turns, ambient, repeats, self.count)
+                gas = PistonGas(
+                    piston, self.mechanism, 360.0 * turns, ambient, repeats, self.count, number
                 )
+                gases.append(gas)
         return tuple(gases)
 
     @property

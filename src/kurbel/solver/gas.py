@@ -400,7 +400,7 @@ class PistonGas:
 
     head, crank: of the two ends, None for an end that is open to the ambient; ends: those that have pressures, with
     their areas in m². cycle: degrees of its own cycle, which is run through `repeats` times in that of the cylinder.
-    count: of machines, None for one. base: in Pa, to be subtracted from those of the file for gauge pressures;
+    count: of machines, None for one. number: of the piston in the cylinder. base: in Pa, to be subtracted from those of the file for gauge pressures;
     swept_volume: in m³, in the chambers that have pressures; starts: where each pressure bends or jumps in the
     cylinder's cycle; areas: at head end and crank end in m², of a piston by a lever reduced to the crosshead, turned:
     whether it moves against that; clearance_volumes: smallest volumes in m³ of head end and crank end, 0 where one is
@@ -415,6 +415,7 @@ class PistonGas:
         ambient: float,
         repeats: int,
         count: int | None,
+        number: int = 0,
     ) -> None:
         indicator = piston.indicator
         assert indicator is not None
@@ -428,6 +429,7 @@ class PistonGas:
             head_end=self.turned, mirrored=indicator.crank_end is indicator.head_end
         )
         self.piston, self.stroke, self.repeats = piston, mechanism.stroke, repeats
+        self.number = number
         self.absolute, self.base = indicator.absolute, at_head.base
         head_area: Number = piston.head_area * abs(ratio)
         crank_area: Number = piston.crank_area * abs(ratio)
