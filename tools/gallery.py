@@ -72,6 +72,7 @@ BEST = {
     "modes": "marine-diesel",
     "orders": "marine-diesel",
     "reuleaux": "mill-engine",
+    "rod-load": "compressor-two-stage",
     "throw-stress": "gas-engine",
     "trace-cycles": "diesel-trace",
     "trace-lines": "diesel-trace",
