@@ -30,7 +30,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Masses, Piston
-from kurbel.machine.turning import Flywheel, Load
+from kurbel.machine.shaft_side import Flywheel, Load
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from machines import STEAM_CARD

@@ -98,7 +98,10 @@ def data_errors(machine: Machine) -> Iterator[Difference]:
         random = np.random.default_rng(seed)
         draws.append(
             answers(
-                [random.normal(0.0, 0.005 * np.abs(one.P_gas).max(), len(phi)) for one in states]
+                [
+                    random.normal(0.0, 0.005 * np.abs(state.P_gas).max(), len(phi))
+                    for state in states
+                ]
             )
         )
     noisy = {

@@ -1,8 +1,8 @@
 """Torsional vibration: 30 masses, 48 orders, 200 speeds; and natural frequencies beside numpy's eigenvalues.
 
-python benchmarks/torsion.py
+python benchmarks/torsion.py [RUNS]
 
-Times are those of the processor, medians of a few runs. Errors are relative, the largest of all modes, against
+Times are those of the processor, medians of RUNS (5 if not given). Errors are relative, the largest of all modes, against
 eigenvalues with 60 digits; chains of masses that differ by ever more powers of ten. Needs mpmath.
 """
 
@@ -22,14 +22,16 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 from test_torsion import at_random, eigenvalues
 
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftSegment
-from kurbel.solver.chapters.chain import Chain, Modes
-from kurbel.solver.chapters.torsion import Excitation, Vibration
+from kurbel.solver.chapters.chain import Chain
+from kurbel.solver.chapters.excitation import Excitation, Vibration
+from kurbel.solver.chapters.natural_modes import Modes
 
 
 def seconds(work: Callable[[], object]) -> float:
     """Median time of the processor for a piece of work."""
+    runs = int(sys.argv[1]) if len(sys.argv) > 1 else 5
     times = []
-    for _ in range(5):
+    for _ in range(runs):
         begin = time.process_time()
         work()
         times.append(time.process_time() - begin)

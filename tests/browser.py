@@ -50,7 +50,7 @@ def dumped(url: str, profile: Path, *options: str) -> tuple[str, list[str]]:
 
 
 class _Alone(http.server.SimpleHTTPRequestHandler):
-    """Serves files, and forbids a page to ask for anything from elsewhere: the console tells if it does."""
+    """Serves files, and forbids a page to ask for anything from elsewhere: the console shows if it does."""
 
     def end_headers(self) -> None:
         self.send_header(

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-# random examples are the same at every run, and no clock is asked; .ci/run draws four times as many. Others every
+# random examples are the same at every run, and no clock is read; .ci/run draws four times as many. Others every
 # time: --hypothesis-profile=other
 EVERY = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("brief", EVERY, max_examples=8, derandomize=True)

@@ -65,7 +65,7 @@ def law_of_each(values: Iterable[object]) -> Callable[[Callable[..., None]], Cal
                 test(*value)
 
         test_of_all.__doc__, test_of_all.__module__ = test.__doc__, test.__module__
-        # for whoever asks the law of some of them only
+        # for a law of some of them only
         test_of_all.law, test_of_all.values = test, every
         return test_of_all
 

@@ -1,4 +1,4 @@
-"""`kurbel sweep` run in the process, the rows that it tells as json, and the numbers in machine files that may vary."""
+"""`kurbel sweep` run in the process, the rows that it prints as json, and the numbers in machine files that may vary."""
 
 import json
 import re

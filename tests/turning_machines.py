@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.machine import Machine
-from kurbel.machine.turning import Effort, Flywheel
+from kurbel.machine.shaft_side import Effort, Flywheel
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
 

@@ -1,4 +1,4 @@
-"""Worked examples of books and pages: how the table of their figures asks kurbel, and what it gives.
+"""Worked examples of books and pages: which output of kurbel has each figure of their table, and its value.
 
 `examples/answers.yaml` is the table; its head explains the entries. The test of the examples and the page of validation
 both read it here.
@@ -20,7 +20,7 @@ TABLE: dict[str, list[dict[str, Any]]] = yaml.load(
     getattr(yaml, "CSafeLoader", yaml.SafeLoader),
 )
 ROWS = [{"file": example, **row} for example, rows in TABLE.items() for row in rows]
-ASKED = [row for row in ROWS if "ask" in row]
+COMPUTED = [row for row in ROWS if "ask" in row]
 FILES = sorted(path.stem for path in FOLDER.glob("*.yaml") if path.stem != "answers")
 POUND, POUND_FORCE, FOOT = 0.45359237, 4.4482216152605, 0.3048
 SI = {
@@ -55,8 +55,8 @@ def question(row: dict[str, Any]) -> dict[str, str | None]:
 
 @cache
 def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
-    """Run the command once for all the crank angles that the table asks of this file, or where a column has a value."""
-    request = [question(row) for row in ASKED if row["file"] == file]
+    """Run the command once for all the crank angles that the table takes from this file, or where a column has a value."""
+    request = [question(row) for row in COMPUTED if row["file"] == file]
     request = [one for one in request if (one["command"], one["where"]) == (command, where)]
     angles = sorted({one["angle"] for one in request if one["angle"]}, key=int) or ["0"]
     columns = {str(one["id"]): "" for one in request if one["angle"] or where}
@@ -68,20 +68,22 @@ def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
     return answer_of(*arguments)
 
 
-def of_table(parsed: dict[str, Any], asked: dict[str, str | None]) -> list[float]:
+def of_table(parsed: dict[str, Any], request: dict[str, str | None]) -> list[float]:
     """Return the values of a column in the rows of a table of the whole machine where others have these values."""
-    table = next(one for one in parsed["machine_place_tables"] if one["id"] == asked["table"])
+    table = next(
+        table for table in parsed["machine_place_tables"] if table["id"] == request["table"]
+    )
     columns = {column["id"]: column["values"] for column in table["columns"]}
-    rows = list(range(len(columns[str(asked["id"])])))
-    for condition in str(asked["rows"]).split("; "):
+    rows = list(range(len(columns[str(request["id"])])))
+    for condition in str(request["rows"]).split("; "):
         name, _, values = condition.partition("=")
         rows = [
             row for value in values.split(",") for row in rows if columns[name][row] == float(value)
         ]
-    return [columns[str(asked["id"])][row] for row in rows]
+    return [columns[str(request["id"])][row] for row in rows]
 
 
-def told(row: dict[str, Any]) -> Any:
+def printed_answer(row: dict[str, Any]) -> Any:
     """Return what kurbel answers, in SI units: a number or a list of them."""
     request = question(row)
     parsed = answer(row["file"], request["command"] or "", request["where"])
@@ -93,10 +95,10 @@ def told(row: dict[str, Any]) -> Any:
     ]
     if request["table"]:
         table = next(
-            one
+            place_table
             for part in parts
-            for one in part.get("place_tables", ())
-            if one["id"] == request["table"]
+            for place_table in part.get("place_tables", ())
+            if place_table["id"] == request["table"]
         )
         return next(column for column in table["columns"] if column["id"] == request["id"])[
             "values"

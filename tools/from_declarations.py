@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Iterable, Iterator
 
@@ -16,7 +17,7 @@ from kurbel.declared.forms.structures import Inline, Keyed, RecordForm, records
 from kurbel.declared.forms.values import Form
 from kurbel.declared.keys import Key, Keys, Record, absent_text
 from kurbel.declared.unit_systems import SYSTEMS
-from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, range_of, unit_names
+from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, listed_units, range_of
 from kurbel.machine import Machine
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id
@@ -77,7 +78,13 @@ def _table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 
 def _cell(text: str) -> str:
-    return text.replace("|", "\\|").replace("\n", " ")
+    """Return a text as a cell; in code a bar is written as a character reference, since a backslash would be printed."""
+    cell = re.sub(r"`([^`]*\|[^`]*)`", _code_with_bars, text)
+    return cell.replace("|", "\\|").replace("\n", " ")
+
+
+def _code_with_bars(code: re.Match[str]) -> str:
+    return f"<code>{html.escape(code[1], quote=False).replace('|', '&#124;')}</code>"
 
 
 def _by_command(declared: Iterable[Quantity]) -> Iterator[str]:
@@ -122,10 +129,12 @@ def _unit(given: str | tuple[str, ...]) -> str:
 def _units() -> Iterator[str]:
     yield (
         "Every key takes units of one kind. Products and powers are written `N m` or `N*m`, `kg m2`, `kg m^2` or "
-        "`kg m²`. `kg` is a mass; a force is `kgf` or `kp`."
+        "`kg m²`. `kg` is a mass; a force is `kgf` or `kp`. Lengths may be feet and inches, `12 ft 6 in`, `1 3/4 in`, "
+        "`5' 6\"`. A pressure unit may name its zero, as `bara`, `psig`, `bar abs`, `kPa(g)`, and must then agree with "
+        "`pressures`. A gallon is a `US gal` or an `imp gal`. Other products, such as `kN/in2`, are read, too."
     )
     rows = (
-        (kind.replace("_", " "), ", ".join(f"`{name}`" for name in unit_names(kind)))
+        (kind.replace("_", " "), ", ".join(f"`{name}`" for name in listed_units(kind)))
         for kind in kinds()
     )
     yield _table(("kind", "units"), rows)

@@ -1,111 +1,75 @@
-"""The page of the machines that come with kurbel: what each is and teaches, its picture, its results, its file.
+"""The page of the machines that come with kurbel: a table of what each shows, with its picture, its file and its topic.
 
-The site includes the file itself (`--8<--`). `pytest --rewrite tests/project/test_documents.py` writes it, and the same on
-tests/pictures/test_gallery.py its pictures.
+`pytest --rewrite tests/project/test_documents.py` writes it, and the same on tests/pictures/test_gallery.py its pictures.
 """
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-from typing import Any
-
-from click.testing import CliRunner
-
 import gallery  # tools/gallery.py
-from kurbel.cli import kurbel
-from kurbel.render.text import Look
-from kurbel.tables.tables import grouped, together
+from kurbel.pictures.pictures import PICTURES
+from kurbel.shipped import MODELINE, shipped
 
-_CONFIGS = Path(__file__).parent.parent / "configs"
-_SHOWN = {
-    "motion": (
-        "stroke",
-        "swing",
-        "time_ratio",
-        "c_m",
-        "c_max",
-        "b_max",
-        "cut_off_head",
-        "cut_off_crank",
-    ),
-    "forces": ("P_peak", "N_peak", "T_max", "work", "power", "mean_pressure", "loss_crosshead"),
-    "flywheel": ("M_mean", "dE", "J", "delta"),
-    "stress": ("safety_pin_min", "safety_web_A_min"),
-    "balance": ("F_free_max", "M_free_max", "counterweight_best", "share_best", "hammer_blow"),
+_TOPICS = {
+    "": ("Motion", "mechanisms.md"),
+    "balance": ("Balance", "balance.md"),
+    "bearings": ("Oil film", "oil-film.md"),
+    "delivery": ("Pumps", "delivery.md#pumps"),
+    "flywheel": ("Flywheel", "flywheel.md"),
+    "forces": ("Forces", "answers.md"),
+    "harmonics": ("Orders", "torsion.md"),
+    "motion": ("Slide valves", "valve.md"),
+    "stress": ("Crankshaft", "crankshaft.md"),
+    "torsion": ("Torsional vibration", "torsion.md"),
 }
-"""Command -> ids of its key values that the page shows, as far as a machine has them."""
-
-_ROUNDING = 1e-9
-"""A value below this is that of a sum that cancels, another on every processor."""
+"""Command of the picture that teaches most of a machine -> the topic that explains it."""
+_TOPICS_OF_MACHINES = {
+    "compressor": ("Compressor", "compressor.md"),
+    "compressor-two-stage": ("Rod load", "bearings.md"),
+    "diesel-trace": ("Measured traces", "traces.md"),
+    "odd-fire-v6": ("Engine layouts", "engine-layouts.md"),
+    "radial-three": ("Engine layouts", "engine-layouts.md"),
+    "steam-ideal": ("Machine file", "machine-file.md"),
+    "vr6": ("Engine layouts", "engine-layouts.md"),
+    "w9": ("Engine layouts", "engine-layouts.md"),
+}
+"""Machine -> its topic where that of the picture is another."""
 
 _HEAD = """# Machines that come with kurbel
 
-`kurbel example` lists them, `kurbel example NAME > engine.yaml` copies one. Each begins with a comment on the source of
-its figures and on what it shows; figures that the source prints are under `expect`, which `kurbel check` compares.
+`kurbel example` lists them, `kurbel example NAME > engine.yaml` copies one. Each file begins with the source of its
+figures; those that the source prints are under `expect`, and `kurbel example --check` compares them all.
+
+| | machine | shows | topic |
+|---|---|---|---|
 """
 
 
 def page() -> str:
-    """Return the page: for each shipped machine its comment, answers, and file."""
-    return "\n".join([_HEAD, *(_machine(file) for file in sorted(_CONFIGS.glob("*.yaml")))])
+    """Return the page: a row for each shipped machine."""
+    return _HEAD + "".join(_row(name, text) for name, text in shipped().items())
 
 
-def _machine(file: Path) -> str:
-    text = file.read_text(encoding="utf-8")
-    picture = gallery.embedded(gallery.TEACHING[file.stem], file.stem)
-    answers = "".join(_answers(command, ids, file) for command, ids in _SHOWN.items())
-    table = f"| Key value | Value | At |\n| --- | --: | --: |\n{answers}".rstrip()
-    source = f'<details markdown>\n<summary>The file</summary>\n\n```yaml\n--8<-- "{file.name}"\n```\n\n</details>'
-    return f"## {file.stem}\n\n{_comment(text)}\n\n{picture}\n\n{table}\n\n{source}\n"
+def _row(name: str, text: str) -> str:
+    """Return the picture of a machine, its file, the first paragraph of its comment, and its topic."""
+    picture_id = gallery.TEACHING[name]
+    picture = next(picture for picture in PICTURES if picture.id == picture_id)
+    topic, target = _TOPICS_OF_MACHINES.get(name, _TOPICS[picture.command])
+    file = gallery.file_of(picture_id, name)
+    cells = (
+        f"[![{name}: {picture.title}]({file})]({file})",
+        f"[{name}](../configs/{name}.yaml)",
+        _first_paragraph(text).replace("|", "&#124;"),
+        f"[{topic}]({target})",
+    )
+    return f"| {' | '.join(cells)} |\n"
 
 
-def _comment(text: str) -> str:
-    """Return the comment at the head of a file as prose."""
+def _first_paragraph(text: str) -> str:
+    """Return the first paragraph of the comment at the head of a file."""
     lines = []
-    for line in text.splitlines():
-        if not line.startswith("#"):
+    for line in text.removeprefix(MODELINE).splitlines():
+        words = line.removeprefix("#").strip()
+        if not line.startswith("#") or not words:
             break
-        lines.append(line.removeprefix("#").strip())
-    return "\n".join(line for line in lines if "$schema" not in line).strip()
-
-
-def _answers(command: str, ids: tuple[str, ...], file: Path) -> str:
-    """Return a row for each of these key values that the command prints for the machine; '' where it has none."""
-    asked = [
-        command,
-        str(file),
-        "-f",
-        "json",
-        "--units",
-        "metric",
-        "--digits",
-        "4",
-        "--angles",
-        "0",
-    ]
-    ran = CliRunner().invoke(kurbel, asked)
-    if ran.exit_code:
-        return ""
-    answer = json.loads(ran.stdout)
-    equal = grouped(answer.get("cylinders", []), lambda one: repr(one["key_values"]))
-    parts = [
-        (together([part["name"] for part in parts]), parts[0]["key_values"]) for parts in equal
-    ]
-    several = len(parts) > 1
-    parts.append(("", answer.get("machine_key_values", [])))
-    rows = [
-        f"| {_named(value, name if several else '')} | {value['value']:g} {Look().unit(value['unit'])} | {_angle(value)} |"
-        for name, values in parts
-        for value in values
-        if value["id"] in ids and abs(value["value"]) > _ROUNDING
-    ]
-    return "".join(f"{row}\n" for row in dict.fromkeys(rows))
-
-
-def _named(one: dict[str, Any], cylinder: str) -> str:
-    return f"`{one['id']}`, {one['symbol']}" + (f", {cylinder}" if cylinder else "")
-
-
-def _angle(one: dict[str, Any]) -> str:
-    return f"{one['at_deg']:.1f}°" if "at_deg" in one else ""
+        lines.append(words)
+    return " ".join(lines)

@@ -15,7 +15,7 @@ import kurbel
 from kurbel.crank_angle import CrankAngle
 from kurbel.crank_formulas import first_order_acceleration, first_order_displacement
 from valve_prints import PRINTS, Print
-from worked_examples import FOLDER, SI, TABLE, told
+from worked_examples import FOLDER, SI, TABLE, printed_answer
 
 _ROOT = Path(__file__).parent.parent
 _WATERWORKS = _ROOT / "configs" / "waterworks.yaml"
@@ -156,7 +156,7 @@ def _figures(row: dict[str, Any]) -> list[float]:
     """Return kurbel's figures in the unit of the source, counted as the source counts."""
     if "back" in row:
         return [row.get("strict", row["exact"])]
-    values = told(row)
+    values = printed_answer(row)
     factor = SI[row["unit"]] * row.get("times", 1)
     return [
         (one - row.get("plus", 0)) / factor
@@ -171,7 +171,7 @@ def _constants(row: dict[str, Any]) -> bool:
 
 def _deviation(printed: str, figures: Sequence[float]) -> str:
     try:
-        pairs = list(zip([float(one) for one in printed.split(", ")], figures, strict=True))
+        pairs = list(zip([float(word) for word in printed.split(", ")], figures, strict=True))
     except ValueError:
         return ""
     # of several the worst is shown
@@ -428,15 +428,15 @@ def _redtenbacher() -> str:
 def _valves() -> str:
     rows = (
         (
-            one.source,
-            one.of,
-            one.printed,
-            _shown(one.computed),
-            one.unit,
-            _of_print(one),
-            _judged_print(one),
+            print.source,
+            print.of,
+            print.printed,
+            _shown(print.computed),
+            print.unit,
+            _of_print(print),
+            _judged_print(print),
         )
-        for one in PRINTS
+        for print in PRINTS
     )
     text = (
         "Dingler's Polytechnisches Journal and Bourne's Catechism of the Steam Engine. Infinite rods, except for the "

@@ -32,14 +32,16 @@ def _leave_out_working_directory() -> None:
     """
     library = os.path.dirname(os.__file__)
     first = sys.path.index(library) if library in sys.path else 1
-    own = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    package_directory = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     try:
         here = os.path.realpath(os.getcwd())
     except OSError:  # it is deleted
         here = ""
-    if here != os.path.realpath(own):
+    if here != os.path.realpath(package_directory):
         sys.path[:first] = [
-            one for one in sys.path[:first] if one and os.path.realpath(one) != here
+            directory
+            for directory in sys.path[:first]
+            if directory and os.path.realpath(directory) != here
         ]
 
 

@@ -39,9 +39,9 @@ class CrankAngle(NamedTuple):
         Raises ValueError for nan or inf.
         """
         if isinstance(degrees, (int, float)):
-            whole = math.remainder(degrees, 360.0)
-            quarter = round(whole / 90.0)
-            rest = math.radians(whole - 90.0 * quarter)
+            remainder = math.remainder(degrees, 360.0)
+            quarter = round(remainder / 90.0)
+            rest = math.radians(remainder - 90.0 * quarter)
             turn = complex(math.cos(rest), math.sin(rest)) * (1, 1j, -1, -1j)[quarter % 4]
             return cls(degrees, turn.imag + 0.0, turn.real + 0.0)  # adding 0.0 makes 0.0 of −0.0
         if not np.isfinite(degrees).all():

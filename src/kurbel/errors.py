@@ -106,8 +106,8 @@ class MachineFileError(KurbelError):
     def line(self, fault: Fault) -> str:
         """Return `file:line:column: path: message`; of an override the option instead of file and place."""
         where = f"{path_text(fault.path)}: " if fault.path else ""
-        place = fault.override or f"{self.file_name}:{fault.line}:{fault.column}"
-        return f"{place}: {where}{fault.message}"
+        origin = fault.override or f"{self.file_name}:{fault.line}:{fault.column}"
+        return f"{origin}: {where}{fault.message}"
 
     def pretty(self, cells: int = 104, spelt: Callable[[str], str] = str) -> str:
         """Return every fault with its source line below it, cut to this many cells, and a caret under the place.
@@ -119,11 +119,11 @@ class MachineFileError(KurbelError):
             shown.append(spelt(self.line(fault)))
             if not fault.source_line.strip():
                 continue
-            place, room = (
+            column, room = (
                 fault.column - 1,
                 max(cells - 6, 1),
             )  # less the margin and an ellipsis on either side
-            start = 0 if len(fault.source_line) <= room else max(place - room * 3 // 4, 0)
+            start = 0 if len(fault.source_line) <= room else max(column - room * 3 // 4, 0)
             text = fault.source_line[start : start + room]
             clean = [spelt(c if c.isprintable() else " ") for c in text]
             cut = spelt("…")[:1]
@@ -132,7 +132,7 @@ class MachineFileError(KurbelError):
                 f" {cut}" if start + len(text) < len(fault.source_line) else "",
             )
             shown.append(f"  {lead} {''.join(clean)}{tail}".rstrip())
-            shown.append(" " * (4 + len("".join(clean[: place - start]))) + "^")
+            shown.append(" " * (4 + len("".join(clean[: column - start]))) + "^")
         return "\n".join(shown)
 
 

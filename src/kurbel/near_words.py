@@ -27,4 +27,6 @@ def did_you_mean(word: str, words: tuple[str, ...]) -> str:
     "; did you mean 'forces'?"
     """
     similar = near(word, words)
-    return f"; did you mean '{similar}'?" if similar else ""
+    if not similar:
+        return ""
+    return f"; did you mean '{similar}'?"

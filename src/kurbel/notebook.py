@@ -1,11 +1,13 @@
 """Results in a notebook: the tables of the reports, and pictures, which are imported when they are shown."""
 
 import os
+import warnings
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kurbel.declared.unit_systems import messages_in
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.machine_file.reader import machine_of
@@ -22,7 +24,19 @@ class ShownCase(solved.Case):
     """A machine with its results; machine: given itself, or as the path or the text of a machine file."""
 
     def __init__(self, machine: Machine | str | os.PathLike[str], count: int | None = None) -> None:
-        super().__init__(machine_of(machine), count)
+        described = machine_of(machine)
+        super().__init__(described, count)
+        if described.origin is None:
+            _warn_of_numbers(described)
+
+
+def _warn_of_numbers(machine: Machine) -> None:
+    """Warn of a machine that was made in Python with numbers that are not in SI: mm for m, say."""
+    from kurbel.notes.plausible import doubts_of
+
+    for doubt in doubts_of(machine):
+        warnings.warn(f"numbers are in SI: {doubt}", stacklevel=4)
+        return
 
 
 Case = ShownCase
@@ -34,18 +48,25 @@ class Drawing(NamedTuple):
 
     pictures: "tuple[Picture, ...]"
 
+    def __repr__(self) -> str:
+        names = ", ".join(picture.id for picture in self.pictures)
+        return f"<kurbel drawing of {names}: .save('NAME.svg'), .pictures>"
+
     def _repr_svg_(self) -> str:
         from kurbel.render import Look
         from kurbel.render.svg import svg_file
 
         return svg_file(self.pictures, Look())
 
-    def save(self, file_name: str) -> None:
-        """Draw to a file that ends in .svg, .png or .pdf. Raises UsageError where it cannot be written."""
+    def save(self, file_name: str, paper: str = "a4") -> None:
+        """Draw to a file that ends in .svg, .png or .pdf; paper: of a pdf, see `kurbel plot --paper`.
+
+        Raises UsageError where it cannot be written.
+        """
         from kurbel.render import Look
         from kurbel.render.drawing import draw_file
 
-        draw_file(self.pictures, Look(), file_name)
+        draw_file(self.pictures, Look(), file_name, paper)
 
 
 def draw(
@@ -58,7 +79,8 @@ def draw(
     from kurbel.pictures.picture_source import PictureOptions
     from kurbel.pictures.pictures import pictures
 
-    return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
+    with messages_in(units):
+        return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
 
 
 def as_html(shown: solved.Case | Results) -> str:

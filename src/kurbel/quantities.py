@@ -93,7 +93,9 @@ class ByChapter(Mapping[str, Quantity]):
 
     def ids_of(self, name: str) -> tuple[str, ...]:
         """Return the ids of the quantities that a name may mean, see `called`; for an id nothing else is opened."""
-        return (name,) if name in self else called(name, self.values())
+        if name in self:
+            return (name,)
+        return called(name, self.values())
 
     def commands_of(self, id: str) -> Iterator[str]:
         """Yield the commands that have a quantity, each once; the one whose own it is first."""
@@ -110,7 +112,9 @@ class ByChapter(Mapping[str, Quantity]):
         """Return names that were split at their commas as they were before, see `rejoined_names`; with or without a prefix."""
         names = list(words)
         are_ids = all(name.rpartition(".")[2] in self for name in names)
-        return names if are_ids else list(rejoined_names(names, self.values()))
+        if are_ids:
+            return names
+        return list(rejoined_names(names, self.values()))
 
 
 KEY_VALUES = ByChapter(lambda lists: lists.all_key_values)

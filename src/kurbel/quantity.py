@@ -20,6 +20,10 @@ V = TypeVar("V")
 
 NOISE_POWER = -14
 """A residual below this power of ten is rounding error, which differs between processors."""
+ENTRY_DIGITS = 6
+"""Significant digits of a value that people write into a machine file again."""
+ENTRY_DECIMALS = 4
+"""Most decimals of such an angle in degrees."""
 GREEK = {
     "φ": "phi", "ψ": "psi", "θ": "theta", "Θ": "Theta", "ω": "omega", "δ": "delta", "Δ": "d", "λ": "lambda", "μ": "mu",
     "ν": "nu", "η": "eta", "π": "pi", "ρ": "rho", "ε": "eps", "γ": "gamma", "α": "alpha", "β": "beta", "κ": "kappa",
@@ -62,6 +66,7 @@ class Quantity(NamedTuple):
     `wanted_large`: a bound on it is one from below, as on every smallest value.
     `heading`: of the key values among which it is listed for people; see `Heading`.
     `of_book`: an approximation of the books, which people are shown where approximations are requested.
+    `for_entry`: people write it into the machine file again, so that it is printed with more digits.
     `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
     """
 
@@ -79,6 +84,7 @@ class Quantity(NamedTuple):
     peak: bool = False
     on_request: tuple[str, ...] = ()
     wanted_large: bool = False
+    for_entry: bool = False
     gauge: bool = False
     mark: str = ""
     group: str = ""
@@ -115,7 +121,9 @@ class Quantity(NamedTuple):
         if self.group:
             return self.group
         stem, _, end = self.id.rpartition("_")
-        return stem if end in ("max", "min", "peak", "mean") else self.id
+        if end in ("max", "min", "peak", "mean"):
+            return stem
+        return self.id
 
     def is_noise(self, value: float) -> bool:
         """Whether this value is a residual of rounding alone."""
@@ -124,7 +132,9 @@ class Quantity(NamedTuple):
     def absolute(self) -> Quantity:
         """Return the quantity of a machine whose pressures are absolute."""
         text = self.text.replace("Gauge", "Absolute").replace("gauge", "absolute")
-        return self._replace(text=text, mark="abs") if self.gauge else self
+        if not self.gauge:
+            return self
+        return self._replace(text=text, mark="abs")
 
     def of_ram(self) -> Quantity:
         """Return the quantity of a machine that drives a ram and has no piston."""
@@ -145,6 +155,13 @@ class Quantity(NamedTuple):
             commands.append(command)
         return self._replace(commands=tuple(commands), heading=self.heading or heading)
 
+    @property
+    def zero(self) -> str:
+        """What a pressure counts from: `absolute`, `gauge`, '' of differences and of other quantities."""
+        if not self.gauge:
+            return ""
+        return "absolute" if self.mark else "gauge"
+
     def marked(self, unit: str) -> str:
         """Return the unit as it is shown."""
         return f"{unit} {self.mark}".rstrip()
@@ -159,7 +176,7 @@ class Quantity(NamedTuple):
         comma = "," if "_" in self.symbol else "_"
         plain = self.plain and f"{self.plain}{comma}{end}"
         symbol, text = f"{self.symbol}{comma}{end}", f"{_LARGEST[end]} {self.called}"
-        return Quantity(f"{self.id}_{end}", symbol, self.kind, text, plain)
+        return Quantity(f"{self.id}_{end}", symbol, self.kind, text, plain, of_book=self.of_book)
 
 
 def first_words(sentence: str) -> str:
@@ -169,7 +186,9 @@ def first_words(sentence: str) -> str:
     'Largest velocity'
     """
     first = _FIRST_WORDS.match(sentence)
-    return first.group().strip() if first else sentence
+    if not first:
+        return sentence
+    return first.group().strip()
 
 
 def by_id(*quantities: Quantity) -> dict[str, Quantity]:
@@ -240,7 +259,9 @@ def in_sentences(word: str, quantities: Iterable[Quantity]) -> str:
         return ""
     with_word = (quantity for quantity in quantities if words in quantity.text.lower())
     ids = dict.fromkeys(quantity.id for quantity in with_word)
-    return f"; it is in the sentences of {', '.join(ids)}" if ids else ""
+    if not ids:
+        return ""
+    return f"; it is in the sentences of {', '.join(ids)}"
 
 
 def rejoined_names(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str]:
@@ -411,7 +432,9 @@ class ForEach:
         self.of, self.rows = of, rows
 
     def __get__(self, results: object | None, owner: type) -> Any:
-        return self if results is None else partial(self.of, results)
+        if results is None:
+            return self
+        return partial(self.of, results)
 
 
 def values_for(

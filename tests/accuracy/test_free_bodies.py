@@ -134,12 +134,15 @@ YOKE = """
 LOSSES = """
 {speed: 60 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, efficiency: 0.9,
  indicator: {head_end: {unit: bar, expansion: [[0, 8], [0.4, 8], [1, 2]], compression: [[1, 0.2], [0, 1]]}},
- tandem: [{bore: 200 mm, indicator: {head_end: {constant: {expansion: -0.4 bar, compression: 8 bar}}}}],
+ tandem: [{bore: 200 mm, indicator: {head_end: {constant: {expansion: -0.4 bar, compression: 8 bar, clearance: 0.3}}}}],
+ pump: {liquid: {bulk_modulus: 9 MPa}},
+ force: {unit: kN, points: [[0, 6, 0.5], [0.3, 4, 0.5], [0.3, 7, 1], [1, 7, 1]]}, ram_force: {return: -300 N},
  flywheel: {inertia: 900 kg m2}}
 """
 DRIVEN = """
 {mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm,
- moment: {work: 40 N m, return: 10 N m}, efficiency: 0.8,
+ moment: {work: 40 N m, return: -5 N m}, efficiency: 0.8,
+ force: {lever: 0.2 m, constant: -30 N, spring: 400 N/m, preload: 9 N, unit: N, points: [[0, 20, 90], [1, 50, 40]]},
  load: {unit: N m, mean: -8, harmonics: [[2, 3, 4]]}}
 """
 
@@ -150,8 +153,8 @@ DRIVEN = """
         pytest.param(EXACT, id="exact rod"),
         pytest.param(RUBBING, id="pins and rings by gas"),
         pytest.param(YOKE, id="yoke"),
-        pytest.param(LOSSES, id="efficiency"),
-        pytest.param(DRIVEN, id="driven rocker and a load by harmonics"),
+        pytest.param(LOSSES, id="efficiency, a load that helps and a soft liquid"),
+        pytest.param(DRIVEN, id="driven rocker with forces and a load by harmonics"),
     ],
 )
 def test_kurbel_agrees_with_free_bodies(text: str) -> None:
@@ -199,11 +202,14 @@ def test_kurbel_agrees_with_free_bodies_of_every_shipped_machine() -> None:
     assert missed == {}, "or has a machine of configs/ changed?"
 
 
-def test_every_shipped_machine_has_free_bodies() -> None:
+def test_only_cards_by_wiebe_have_no_free_bodies() -> None:
+    left_out = {}
     for name, text in shipped().items():
         machine = loads(text)
         obstacles = {what for quantity in NEEDED for what in unknown(machine, quantity)}
-        assert obstacles == set(), name
+        if obstacles:
+            left_out[name] = obstacles
+    assert left_out == {"petrol-engine": {"a card by Wiebe"}}
 
 
 RADIAL = """
@@ -257,14 +263,19 @@ def traced(angles: list[float]) -> Machine:
     points = []
     for angle in angles:
         phi = np.radians(angle)
-        points.append(f"[{angle}, {5 + 4 * np.cos(phi) + np.sin(3 * phi)!r}]")
+        points.append(f"[{angle}, {5 + 4 * np.cos(phi) + np.sin(3 * phi):.17g}]")
     return loads(TRACED.replace("POINTS", ", ".join(points)))
 
 
 def test_kurbel_agrees_with_straight_lines_between_the_samples_of_a_trace() -> None:
+    """At angles of both strokes, at both ends; integrals and extremes: see `diesel-trace` in the stored references."""
     machine = traced([0.0, 7.0, 31.0, 90.0, 133.0, 202.0, 290.0, 360.0])
-    assert set(agreement(machine)) == {"A_i", "T_max, T_min", "ΔE"}
-    assert max(agreement(machine).values()) < 1e-14
+    book = Textbook(machine).cylinder(machine.cylinders[0])
+    degrees = np.array([1.0, 40.0, 100.0, 179.0, 230.0, 300.0, 359.0])
+    state = Case(machine).cylinders[0].at(degrees)
+    by_book = [book.at(mpf(angle), mpf(angle)) for angle in degrees]
+    assert state.P_gas == pytest.approx([float(exact.P_gas) for exact in by_book], rel=1e-13)
+    assert state.T == pytest.approx([float(exact.T) for exact in by_book], rel=1e-12)
 
 
 def test_the_work_of_a_trace_at_equal_angles_is_a_sum_over_its_samples() -> None:

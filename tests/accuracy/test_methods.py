@@ -72,7 +72,7 @@ def test_methods_converge(rows: list[Trial], quantity: str) -> None:
 
 def test_evaluations_are_counted(rows: list[Trial]) -> None:
     """37 angles of a closed formula, as many samples of a turn as divisions; kurbel's own are those of its solver."""
-    used = {(one.quantity, one.method, one.points): one.evaluations for one in rows}
+    used = {(row.quantity, row.method, row.points): row.evaluations for row in rows}
     assert used["x", "kurbel", "closed"] == used["x", "textbook, radians", "closed"] == 37
     assert used["c", "Chebyshev fit", "32"] == 33
     assert 3600 <= used["A_i", "trapezium rule", "3600"] < 3700

@@ -4,9 +4,10 @@ import json
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 
-from command import answer, run
+from command import answer, printed, run
 from representative import CONFIGS
 
 
@@ -60,3 +61,51 @@ def directions(name: str, column: str) -> list[float]:
     (ellipses,) = [table for table in tables if table["id"] == "ellipses"]
     (values,) = [one["values"] for one in ellipses["columns"] if one["id"] == column]
     return [value for value in values if value is not None]
+
+
+# weights as a designer types them back
+
+FIVE_CYLINDERS = """
+speed: 1500 rpm
+cycle: four-stroke
+cylinders:
+  count: 5
+  firing_order: 1-2-4-5-3
+  spacing: 97.3 mm
+  each: {crank: 43.2 mm, rod: 151.7 mm, masses: {reciprocating: 0.613 kg, rotating: 0.871 kg}}
+"""
+
+
+def typed_back(text: str, units: str) -> str:
+    """Return the file with the best weights as they are printed for people."""
+    page = printed("balance", "-", "--units", units, "-f", "markdown", text=text)
+    rows = re.findall(
+        r"^\| (counterweight|shaft n = (\d), (with|against) the crank):? [AB] "
+        r"\| (\S+) \| (\S+) \| (\S+) \|$",
+        page,
+        re.MULTILINE,
+    )
+    length, product = {"metric": ("mm", "kg m"), "imperial": ("in", "lb in")}[units]
+    weights, shafts = [], []
+    for what, order, sense, place, size, angle in rows:
+        keys = f"product: {size} {product}, angle: {angle} deg, axial_position: {place} {length}"
+        if what == "counterweight":
+            weights.append(f"{{{keys}}}")
+        else:
+            shafts.append(f"{{{keys}, order: {order}, sense: {sense}}}")
+    assert len(weights) == 2
+    assert len(shafts) == 6
+    return f"{text}counterweights: [{', '.join(weights)}]\nbalance_shafts: [{', '.join(shafts)}]\n"
+
+
+@pytest.mark.parametrize("units", ["metric", "imperial"])
+def test_weights_as_they_are_printed_balance_as_computed(units: str) -> None:
+    """Counterweights and shafts cancel the moments of orders 1 and 2; of five cranks the next one is of order 4."""
+    moments = []
+    for text in (FIVE_CYLINDERS, typed_back(FIVE_CYLINDERS, units)):
+        orders = answer("balance", "-", text=text)["machine_place_tables"][0]
+        columns = {column["id"]: column["values"] for column in orders["columns"]}
+        moments.append([columns["M_forward"][:2], columns["M_backward"][:2]])
+    before, after = np.array(moments)
+    assert np.abs(after).max() < 5e-6 * np.abs(before).max()
+    assert before.min() > 1e-3 * before.max()

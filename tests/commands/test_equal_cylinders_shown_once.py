@@ -1,4 +1,4 @@
-"""Equal cylinders are told once to people and each to programs; where the cranks of a firing order stand."""
+"""Equal cylinders are shown once to people and each to programs; where the cranks of a firing order are."""
 
 import pytest
 
@@ -46,7 +46,7 @@ def test_check_reports_equal_ones_once_and_each_of_their_cranks() -> None:
 
 
 def test_one_that_differs_is_alone() -> None:
-    """The third has no bore: the others are told together, their limits too."""
+    """The third has no bore: the others are shown together, their limits too."""
     each = "{crank: 50 mm, rod: 200 mm, masses: {piston: 1 kg}}"
     text = f"speed: 600 rpm\ncylinders: [{each}, {each}, {each.replace('1 kg', '2 kg')}, {each}]\n"
     text += "limits: {b_max: 1 km/s2}\n"

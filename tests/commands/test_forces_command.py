@@ -14,7 +14,7 @@ def cylinder(parsed: dict[str, object], index: int = 0) -> dict[str, list[dict[s
 
 
 def key_value(part: dict[str, list[dict[str, object]]], name: str) -> dict[str, object]:
-    return next(one for one in part["key_values"] if one["id"] == name)
+    return next(key_value for key_value in part["key_values"] if key_value["id"] == name)
 
 
 def test_demo_machine_of_the_contract() -> None:

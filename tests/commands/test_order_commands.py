@@ -11,7 +11,7 @@ BLOWER, SHIP = (str(CONFIGS[name]) for name in ("coupled-blower", "marine-diesel
 
 
 def table(found: dict[str, Any], id: str) -> dict[str, list[Any]]:
-    one = next(one for one in found["machine_place_tables"] if one["id"] == id)
+    one = next(table for table in found["machine_place_tables"] if table["id"] == id)
     return {column["id"]: column["values"] for column in one["columns"]}
 
 
@@ -28,7 +28,7 @@ def test_the_columns_that_scripts_rely_on() -> None:
     ]
     assert orders["order"] == list(range(1, 25))
     result = answer("torsion", SHIP)
-    assert [one["id"] for one in result["machine_place_tables"]] == [
+    assert [table["id"] for table in result["machine_place_tables"]] == [
         "modes",
         "holzer",
         "critical_speeds",

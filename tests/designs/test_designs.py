@@ -38,7 +38,10 @@ def test_grid_list_and_sample() -> None:
     together = Plan([read_axis("a=1:2:1; b=5,6"), read_axis("c=7,8,9")])
     rows = [together.texts(row) for row in range(together.rows)]
     assert rows == [(x, y, z) for x, y in ("15", "26") for z in "789"]
-    assert [one.texts for one in read_axis("name=a;b; speed=1 rpm")] == [("a;b",), ("1 rpm",)]
+    assert [read_axi.texts for read_axi in read_axis("name=a;b; speed=1 rpm")] == [
+        ("a;b",),
+        ("1 rpm",),
+    ]
     both = Plan([a, read_axis("c=normal(10, 1)")], sample=50, seed=3)
     drawn = np.array([[float(text) for text in both.texts(row)] for row in range(both.rows)])
     assert both.rows == 100
@@ -50,7 +53,7 @@ def test_grid_list_and_sample() -> None:
 def test_a_number_in_a_unit_is_read_as_its_text() -> None:
     for kind, unit in [
         ("ratio", "%"),
-        *((one, unit) for one in kinds() for unit in unit_names(one)),
+        *((name, unit) for name in kinds() for unit in unit_names(name)),
     ]:
         one = Input("x", (), (12.5, 3, 0.1, -2.25), unit)
         texts = Input("x", tuple(map(one.text, range(4))))

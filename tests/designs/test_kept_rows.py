@@ -12,7 +12,7 @@ from kurbel.designs.sweep import Sweep
 from kurbel.errors import KurbelError
 from representative import CONFIGS
 
-ASKED = ("--vary", "rod_ratio=3:6:0.3", "--columns", "c_max,T_max")
+SWEEP = ("--vary", "rod_ratio=3:6:0.3", "--columns", "c_max,T_max")
 
 
 @pytest.fixture
@@ -60,10 +60,10 @@ def interrupted(machine: Path, *args: str, rows: int = 6) -> Path:
 def test_another_sweep_does_not_go_on(
     machine: Path, written: str, others: tuple[str, ...], message: str
 ) -> None:
-    file = interrupted(machine, *ASKED, "-f", written)
+    file = interrupted(machine, *SWEEP, "-f", written)
     before = file.read_bytes()
-    words = others if others[0] == "--vary" else ASKED[:2] + others
-    words += () if "--columns" in others else ASKED[2:]
+    words = others if others[0] == "--vary" else SWEEP[:2] + others
+    words += () if "--columns" in others else SWEEP[2:]
     result = run("sweep", machine, *words, "-f", written, "-o", str(file), "--resume")
     assert result.exit_code == 2
     assert f"--resume: {file} is not of this sweep: " in result.output
@@ -72,13 +72,13 @@ def test_another_sweep_does_not_go_on(
 
 
 def test_chosen_rows_go_on_where_they_end(machine: Path) -> None:
-    words = (*ASKED, "--where", "T_max < 88.5 kN")
+    words = (*SWEEP, "--where", "T_max < 88.5 kN")
     whole = interrupted(machine, *words, rows=99).read_bytes()
     file = interrupted(machine, *words, rows=2)
     assert run("sweep", machine, *words, "-o", str(file), "--resume").exit_code == 0
     assert file.read_bytes() == whole
     file = interrupted(machine, *words, rows=2)
-    assert "is missing in it" in run("sweep", machine, *ASKED, "-o", str(file), "--resume").output
+    assert "is missing in it" in run("sweep", machine, *SWEEP, "-o", str(file), "--resume").output
 
 
 # what was there before

@@ -1,4 +1,4 @@
-"""What a sweep tells of limits, and which rows it keeps, by every name that a column has."""
+"""What a sweep shows of limits, and which rows it keeps, by every name that a column has."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def numbers(*args: str) -> list[object]:
 
 
 def test_a_limit_that_cannot_be_judged_is_not_kept() -> None:
-    """Without a flywheel there is no δ, as `check` says; all rows were told to keep the bound on it."""
+    """Without a flywheel there is no δ, as `check` says; all rows were said to keep the bound on it."""
     delta = ("--set", "limits.delta=1/50")
     (result,) = rows("--vary", "rod_ratio=5", "--columns", "N_max", *delta)
     assert (result["keeps"], result["broken"]) == (None, None)

@@ -51,7 +51,7 @@ def farthest(file: Path, inputs: dict[str, list[str]], columns: list[str]) -> tu
 
 @pytest.mark.parametrize("file", few(FILES, FILES[::6], [path.stem for path in FILES]))
 def test_numbers_of_a_file_vary(file: Path) -> None:
-    """Up to four of them by a tenth, all that `forces` tells, and where a row fails, why."""
+    """Up to four of them by a tenth, all that `forces` prints, and where a row fails, why."""
     random = np.random.default_rng(crc32(file.stem.encode()))
     keys = numbers_in(read(file))
     chosen = [keys[place] for place in random.permutation(len(keys))[:4]]

@@ -120,18 +120,18 @@ def test_key_values_of_other_commands_and_limits() -> None:
 
 def test_where_sort_top_and_pareto() -> None:
     words = ("--vary", "rod_ratio=3:6:0.5", "--columns", "c_max,b_max")
-    every = {one["row"]: one for one in rows(*words)}
+    every = {row["row"]: row for row in rows(*words)}
     below = rows(*words, "--where", "b_max < 13.5 m/s2")
     assert [one["row"] for one in below] == [
         row for row, one in every.items() if one["b_max_m/s^2"] < 13.5
     ]
-    assert [one["row"] for one in rows(*words, "--where", "rod_ratio >= 5")] == [5, 6, 7]
-    assert [one["row"] for one in rows(*words, "--sort", "c_max", "--top", "2")] == [7, 6]
-    assert [one["row"] for one in rows(*words, "--sort", "-c_max", "--top", "1")] == [1]
+    assert [row["row"] for row in rows(*words, "--where", "rod_ratio >= 5")] == [5, 6, 7]
+    assert [row["row"] for row in rows(*words, "--sort", "c_max", "--top", "2")] == [7, 6]
+    assert [row["row"] for row in rows(*words, "--sort", "-c_max", "--top", "1")] == [1]
     # a longer rod betters both
-    assert [one["row"] for one in rows(*words, "--pareto", "c_max,b_max")] == [7]
+    assert [row["row"] for row in rows(*words, "--pareto", "c_max,b_max")] == [7]
     # more of c_max against less of b_max: nothing betters anything
-    assert [one["row"] for one in rows(*words, "--pareto", "-c_max,b_max")] == [1, 2, 3, 4, 5, 6, 7]
+    assert [row["row"] for row in rows(*words, "--pareto", "-c_max,b_max")] == [1, 2, 3, 4, 5, 6, 7]
 
 
 def test_a_key_value_is_requested_of_one_cylinder_as_it_is_called_in_the_head() -> None:
@@ -220,14 +220,8 @@ def test_an_interrupt_leaves_whole_rows_and_the_old_file(jobs: str, tmp_path: Pa
 
 @pytest.mark.slow
 @pytest.mark.parametrize("end", [signal.SIGTERM, signal.SIGKILL])
-@pytest.mark.parametrize("suffix", ["csv", "parquet"])
-def test_who_is_killed_leaves_no_process_and_the_old_file(
-    end: int, suffix: str, tmp_path: Path
-) -> None:
-    """Emptied at the start: a killed sweep left 4 bytes of Parquet in place of a whole file."""
-    if suffix == "parquet":
-        pytest.importorskip("pyarrow")
-    file = tmp_path / f"rows.{suffix}"
+def test_who_is_killed_leaves_no_process_and_the_old_file(end: int, tmp_path: Path) -> None:
+    file = tmp_path / "rows.csv"
     file.write_text("old")
     process = in_the_midst(file, "2")
     os.kill(process.pid, end)
@@ -236,8 +230,7 @@ def test_who_is_killed_leaves_no_process_and_the_old_file(
     ]  # comes to the end of what each of them may write to when none is left
     assert stderr == ""
     assert file.read_text() == "old"
-    if suffix == "csv":
-        assert part(file).read_text().startswith("row,rod_ratio,T_max_N,failure\n1,3.0,")
+    assert part(file).read_text().startswith("row,rod_ratio,T_max_N,failure\n1,3.0,")
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "tls://127.0.0.1:1", "http://x"])
@@ -258,31 +251,6 @@ def test_every_format_has_every_row(tmp_path: Path) -> None:
     text = run(*words).stdout.splitlines()
     assert text[-2].split() == ["2", "5.000", "87.70", "130.5", "316.1"]
     assert "too small" in text[-3]
-
-
-@pytest.mark.slow
-def test_parquet_holds_rows_of_which_the_first_all_fail(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The type of a column was that of its first group of rows; a sweep without a row left no file."""
-    parquet = pytest.importorskip("pyarrow.parquet")
-    monkeypatch.setattr("kurbel.render.sweep_rows._IN_A_GROUP", 500)
-    file = str(tmp_path / "rows.parquet")
-    words = (
-        "--vary",
-        "rod_ratio=0.2:1.3:0.001",
-        "--columns",
-        "stroke,phi_b_zero",
-        "-o",
-        file,
-        "--jobs",
-        "1",
-    )
-    assert run(*words).exit_code == 0
-    strokes = parquet.read_table(file)["stroke_m"].to_pylist()
-    assert (strokes.count(None), strokes[-1]) == (801, pytest.approx(0.8))
-    assert run(*words, "--where", "rod_ratio > 9").exit_code == 0
-    assert parquet.read_table(file).num_rows == 0
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
-"""Every worked example that can be asked: its machine file, answered to the digits of an independent recalculation.
+"""Every worked example that kurbel can compute: its machine file, to the digits of an independent recalculation.
 
-`answers.yaml` beside this file says how each is asked, or why it cannot be.
+`answers.yaml` beside this file says which output has its figures, or why none has.
 """
 
 import re
@@ -10,22 +10,22 @@ import pytest
 
 from command import run
 from representative import few
-from worked_examples import ASKED, FILES, FOLDER, TABLE, expected, told
+from worked_examples import COMPUTED, FILES, FOLDER, TABLE, expected, printed_answer
 
-EXAMPLES = list(dict.fromkeys(row["file"] for row in ASKED))
-# what is asked, but for its numbers, and the first example that asks it
-KINDS = {re.sub(r"\d", "", row["ask"]): row["file"] for row in reversed(ASKED)}
+EXAMPLES = list(dict.fromkeys(row["file"] for row in COMPUTED))
+# the question, but for its numbers, and the first example that has it
+KINDS = {re.sub(r"\d", "", row["ask"]): row["file"] for row in reversed(COMPUTED)}
 
 
 @pytest.mark.parametrize("file", few(EXAMPLES, dict.fromkeys(KINDS.values())))
 def test_it_answers(file: str) -> None:
-    for row in ASKED:
+    for row in COMPUTED:
         if row["file"] == file:
             check(row)
 
 
 def check(row: dict[str, Any]) -> None:
-    answered = told(row)
+    answered = printed_answer(row)
     if "back" in row:
         assert str(row.get("strict", row["exact"])) in (FOLDER / f"{row['file']}.yaml").read_text(
             encoding="utf-8"
@@ -56,6 +56,6 @@ def test_none_of_the_78_examples_is_missing() -> None:
 
 @pytest.mark.parametrize("file", few(FILES, FILES[::6]))
 def test_every_machine_file_is_valid_and_of_an_example(file: str) -> None:
-    assert file in TABLE or file in {row["file"] for row in ASKED}
+    assert file in TABLE or file in {row["file"] for row in COMPUTED}
     result = run("check", FOLDER / f"{file}.yaml")
     assert (result.exit_code, result.stderr) == (0, "")

@@ -190,6 +190,54 @@ def test_load_cases_and_limits_are_on_the_first_page() -> None:
     assert one == pytest.approx(both / 2, rel=0.02)
 
 
+def sections_of(page: str) -> list[str]:
+    return re.findall(r'<section id="([^"]*)"', page)[1:]
+
+
+def test_sections_are_those_named() -> None:
+    case = case_of("punch")
+    assert sections_of(page_of("punch"))[-3:] == ["tables", "left-out", "input"]
+    short = page_of_case(case, sections=("answers", "input"))
+    assert sections_of(short) == ["flywheel", "harmonics", "input"]
+    assert short.count("<figure>") == section(short, "summary").count("<figure>")
+    pictures_alone = page_of_case(case, sections=("pictures",))
+    assert "<table>" not in section(pictures_alone, "flywheel")
+    assert "<figure>" in section(pictures_alone, "flywheel")
+    # of a command pictures and answers, also next to the answers of all
+    named = page_of_case(case, sections=("answers", "flywheel"))
+    assert "<figure>" in section(named, "flywheel")
+    assert "<figure>" not in section(named, "harmonics")
+
+
+def test_tables_over_the_angle_are_printed_where_they_are_named() -> None:
+    """On the page a box decides; what follows it is hidden in print as long as it is not ticked."""
+    unticked, ticked = '<input type="checkbox" id="print-tables">', ' id="print-tables" checked>'
+    assert unticked in section(page_of("punch"), "tables")
+    assert "#print-tables:not(:checked)~*" in page_of("punch")
+    for words in (("flywheel", "tables"), ("all",)):
+        page = page_of_case(case_of("punch"), sections=words)
+        assert ticked in section(page, "tables")
+    assert "Over the crank angle" not in page_of_case(case_of("punch"), sections=("flywheel",))
+
+
+def test_sections_that_a_machine_does_not_have_are_refused() -> None:
+    machine = str(CONFIGS["punch"])
+    unknown = run("report", machine, "--sections", "bearing", "-o", "-")
+    assert unknown.exit_code == 2
+    assert "there is no section 'bearing'; did you mean 'bearings'?" in unknown.stderr
+    missing = run("report", machine, "--sections", "torsion", "-o", "-")
+    assert missing.exit_code == 2
+    assert "--sections torsion: Punch with flywheel: no 'shaft' is given" in missing.stderr
+    both = run("report", machine, "--short", "--sections", "input", "-o", "-")
+    assert "--short is --sections answers,input; give one of them" in both.stderr
+
+
+def test_the_sheet_is_that_of_the_paper() -> None:
+    short = ("report", str(CONFIGS["punch"]), "--short", "-o", "-")
+    assert "@page{size:a4}" in run(*short).stdout
+    assert "@page{size:letter}" in run(*short, "--paper", "letter").stdout
+
+
 def test_a_title_of_the_users() -> None:
     page = run("report", str(CONFIGS["shaper"]), "--title", "Offer 7 <a>").stdout
     assert "<h1>Offer 7 &lt;a&gt;</h1>" in page
@@ -200,7 +248,7 @@ def test_the_energy_balance_closes_on_the_page() -> None:
     rows = re.search(r'id="energy".*?<tbody>(.*?)</tbody>', page_of("waterworks"), re.DOTALL)
     assert rows
     figures = [
-        number_of(one) for one in re.findall(r'<td class="r">(−?[0-9.]+)</td>', rows.group(1))
+        number_of(match) for match in re.findall(r'<td class="r">(−?[0-9.]+)</td>', rows.group(1))
     ]
     *terms, shaft = figures
     assert sum(terms) == pytest.approx(shaft, rel=1e-3)
@@ -216,7 +264,7 @@ PAGES = [
 
 
 @pytest.mark.parametrize(
-    "names", few([(one,) for one in PAGES], [(PAGES[1],), (PAGES[3],)], map("-".join, PAGES))
+    "names", few([(page,) for page in PAGES], [(PAGES[1],), (PAGES[3],)], map("-".join, PAGES))
 )
 def test_nothing_comes_from_elsewhere_and_nothing_runs(names: tuple[str, ...]) -> None:
     page = page_of(*names)
@@ -317,7 +365,7 @@ def test_differences_are_in_percent(tmp_path: Path) -> None:
     other.write_text("{name: A, stroke: 900 mm, rod_ratio: 5}")
     page = run("report", str(one), str(other)).stdout
     assert f"A (A) is that of {one}; A (B) is that of {other}." in text_in(page)
-    # the heading, and what a reader of screens is told
+    # the heading, and what a reader of screens says
     assert (
         text_in(page).count("A (A). Displacement")
         == text_in(page).count("A (B). Displacement")

@@ -14,7 +14,7 @@ from good_machines import ALL
 from kurbel.declared.forms.structures import RecordForm, records
 from kurbel.declared.keys import Key
 from kurbel.declared.unit_systems import SI
-from kurbel.declared.units import ZEROED_UNITS, kind_example, parse_quantity, unit_names
+from kurbel.declared.units import kind_example, parse_quantity, unit_names
 from kurbel.errors import RuleError, UnitError
 from kurbel.machine_file.reader import ROOT
 from kurbel.machine_file.schema import describe, json_schema
@@ -73,6 +73,9 @@ def test_refuses_what_the_reader_refuses(machine: dict[str, Any], validator: Any
     assert not validator.is_valid(machine)
 
 
+FEET_AND_INCHES = ("12 ft 6 in", "5' 6\"", "5'-6 1/2\"", "1 3/4 in", "3 feet 1 inch", '9"', "3'")
+
+
 @pytest.mark.parametrize("kind", [kind for kind in SI if kind != "ratio"])
 def test_patterns_know_every_unit(kind: str) -> None:
     definitions = whole_schema()["definitions"]
@@ -83,8 +86,12 @@ def test_patterns_know_every_unit(kind: str) -> None:
         powers = re.sub("2(?!O)", "²", unit), re.sub("(?<=m)2", "^2", unit)
         for spelt in (unit, *powers, unit.replace(" ", "·"), re.sub("(?=Hg|H2O)", " ", unit)):
             assert re.search(pattern, f"1.5e3 {spelt}"), spelt
-            assert unit in ZEROED_UNITS or parse_quantity(f"1.5e3 {spelt}", kind) > 0
+            assert parse_quantity(f"1.5e3 {spelt}", kind) > 0
     assert re.search(pattern, kind_example(kind))
+    if kind == "length":
+        for text in FEET_AND_INCHES:
+            assert re.search(pattern, text)
+            assert parse_quantity(text, kind) > 0
     for text in ("1.5", "1,5 mm", "010 mm", "mm", "5", "1_0 mm"):
         assert not re.search(pattern, text)
         with pytest.raises(UnitError):

@@ -17,7 +17,7 @@ def exact_angle(degrees):
 
 @cache
 def _exact_angle(degrees, prec):
-    """Once for each precision in which it is asked: tests ask the same angles of many mechanisms."""
+    """Once for each precision: tests take the same angles of many mechanisms."""
     turn = mp.mpf(degrees) / 180
     return CrankAngle(degrees, mp.sinpi(turn), mp.cospi(turn))
 

@@ -80,7 +80,7 @@ def take_over(monkeypatch: pytest.MonkeyPatch, spoilt: types.ModuleType) -> None
             monkeypatch.setattr(real, name, one)
 
 
-def asked(law: Callable[..., None]) -> Iterator[tuple[Callable[..., None], dict[str, object]]]:
+def calls_of(law: Callable[..., None]) -> Iterator[tuple[Callable[..., None], dict[str, object]]]:
     """Yield the calls that make up a test: the law itself with the arguments of each."""
     if hasattr(law, "law"):
         for values in law.values:
@@ -106,7 +106,7 @@ def broken(file: str) -> Iterator[str]:
     """Yield the names of the laws that the machines of a file now break."""
     own = f"kurbel.mechanisms.{file}"
     for name, test in vars(laws).items():
-        calls = asked(test) if name.startswith("test_") else ()
+        calls = calls_of(test) if name.startswith("test_") else ()
         try:
             for law, given in calls:
                 if type(given.get("machine")).__module__ == own:

@@ -1,4 +1,4 @@
-"""Pressures that a file gives as absolute are shown, asked for and limited as absolute; what hangs on them is not."""
+"""Pressures that a file gives as absolute are shown, searched and limited as absolute; what depends on them is not."""
 
 import csv
 import math

@@ -6,7 +6,15 @@ import pytest
 
 from command import run
 from kurbel.declared.unit_systems import SI, SYSTEMS, shown_unit
-from kurbel.declared.units import KINDS, ZEROED_UNITS, Kind, parse_quantity, unit_factor, unit_names
+from kurbel.declared.units import (
+    KINDS,
+    Kind,
+    kinds,
+    listed_units,
+    parse_quantity,
+    unit_factor,
+    unit_names,
+)
 from kurbel.errors import UnitError
 from representative import CONFIGS, case_of, law_of_each
 
@@ -35,10 +43,9 @@ def test_values_by_definition_and_what_is_written_of_other_texts(
 @law_of_each(kind for kind in SI if kind != "ratio")
 def test_every_unit_has_a_factor(kind: str) -> None:
     for unit in unit_names(kind):
-        if unit not in ZEROED_UNITS:  # which only machine files have
-            up, down = unit_factor(unit, kind)
-            assert up > 0
-            assert down > 0
+        up, down = unit_factor(unit, kind)
+        assert up > 0
+        assert down > 0
 
 
 def test_a_unit_without_a_factor_reports_where_it_is_added(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -48,6 +55,16 @@ def test_a_unit_without_a_factor_reports_where_it_is_added(monkeypatch: pytest.M
         LookupError, match=r"'furlong' .* add its multiplier and divisor to _FACTORS"
     ):
         unit_factor("furlong/h", "wear")
+
+
+def test_products_that_nobody_writes_are_read_but_not_listed() -> None:
+    listed = [unit for kind in kinds() for unit in listed_units(kind)]
+    for unit in ("kN/in2", "um/h", "tf ft", "t ft2", "mg ft", "lbf mm", "m/mmHg", "mmHg/deg"):
+        assert unit not in listed
+    for unit in ("kN/cm2", "m/s", "m/s2", "km/h", "lbf ft", "lb ft2", "g mm", "in/psi", "mm/at"):
+        assert unit in listed
+    assert parse_quantity("1 kN/in2", "stress") == pytest.approx(1e3 / 0.0254**2, rel=1e-15)
+    assert parse_quantity("3600 um/h", "velocity") == pytest.approx(1e-6, rel=1e-15)
 
 
 @law_of_each(kind for kind in SI if kind != "ratio")

@@ -57,7 +57,7 @@ def test_samples_are_carried_over_the_end_of_the_cycle() -> None:
     """A crank that lags by 350° has passed its dead centre 350° later."""
     own = pieces_at(33.0, 200.0)
     pieces = common([(own, 350.0)], 360.0)
-    carried = pieces.carried(of_angle(own, np.sin), own, 350.0)
+    carried = pieces.resampled(of_angle(own, np.sin), own, 350.0)
     exact = np.sin(np.radians(pieces.degrees - 350.0))
     assert carried == pytest.approx(exact, abs=1e-13)
 

@@ -10,6 +10,7 @@ from scipy.integrate import trapezoid
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert
 from kurbel.errors import UsageError
+from kurbel.machine_file import loads
 from kurbel.pictures.picture import Panel, Picture
 from kurbel.pictures.picture_source import PictureOptions, sampled
 from kurbel.pictures.pictures import PICTURES, pictures
@@ -18,6 +19,7 @@ from kurbel.render.braille import braille
 from kurbel.render.picture import PanelFrame, picture_text
 from kurbel.render.svg import PAPER_SIZES
 from kurbel.render.text import plain_lines
+from kurbel.solver.case import Case
 from representative import case_of
 
 LINES = {
@@ -125,7 +127,7 @@ def test_the_card_encloses_the_indicated_work() -> None:
     panel = drawn("compressor", "card-volume")[0].panels[0]
     assert panel.x.unit == "cm^3"
     work = 0.0
-    for curve in (one for one in panel.curves if one.kind == "line"):
+    for curve in (curve for curve in panel.curves if curve.kind == "line"):
         V, p = (np.concatenate(parts) for parts in zip(*curve.pieces()))
         V, p = V / 1e6, p * 1e5
         work += float(trapezoid(p, V))
@@ -194,9 +196,9 @@ def test_a_machine_without_an_oil_film_has_no_path_of_a_journal() -> None:
 
 
 def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:
-    """A point stands as far from the middle as its load is large, in the direction that the column tells."""
+    """A point is as far from the middle as its load is large, in the direction of the column."""
     case, pictures_ = case_of("gas-engine"), drawn("gas-engine", "bearing-loads")
-    assert [one.of for one in pictures_] == [part.name for part in case.bearings.parts]
+    assert [picture.of for picture in pictures_] == [part.name for part in case.bearings.parts]
     for picture, part in zip(pictures_, case.bearings.parts):
         for panel in picture.panels:
             columns = part.at(np.linspace(0.1, 719.9, 500))
@@ -213,7 +215,7 @@ def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:
 def test_modes_are_those_of_holzer_with_their_frequencies() -> None:
     case = case_of("marine-diesel")
     panel = drawn("marine-diesel", "modes")[0].panels[0]
-    curves = [one for one in panel.curves if one.kind == "line"]
+    curves = [curve for curve in panel.curves if curve.kind == "line"]
     for mode, curve in enumerate(curves, 1):
         angles = np.asarray(case.torsion.holzer(mode).angles)
         assert (curve.y == angles / np.abs(angles).max()).all()
@@ -342,3 +344,58 @@ def test_a_diagram_that_would_be_a_line_or_empty_is_left_out() -> None:
 def test_a_degree_is_next_to_its_number() -> None:
     text = picture_text(drawn("shaper", "motion")[0], Look())
     assert "θ_max 22.02°, 112.02°" in text
+
+
+# rod load of compressors, and what the approximations miss
+
+
+COMPRESSOR = """
+speed: 300 rpm
+stroke: 300 mm
+rod_ratio: 5
+bore: 300 mm
+crank_end_rod: 60 mm
+masses: {other: 150 kg, connecting_rod: 90 kg}
+indicator:
+  pressures: absolute
+  head_end: {compressor: {suction: 1 bar, delivery: 6 bar, clearance: 0.1, exponent: 1.3}}
+  crank_end: mirrored
+"""
+
+
+def test_the_rod_load_is_gas_and_inertia_within_its_limits() -> None:
+    limits = "limits: {rod_compression_max: 30 kN, rod_tension_max: 20 kN}\n"
+    (picture,) = pictures(Case(loads(COMPRESSOR + limits)), ("rod-load",), PictureOptions())
+    (panel,) = picture.panels
+    curves = {curve.name.symbol: curve for curve in panel.curves}
+    phi = np.arange(0.0, 360.0, 7.0)
+    load, gas, inertia = (
+        np.interp(phi, curves[symbol].x, curves[symbol].y) for symbol in ("P_G", "P_gas", "−m b")
+    )
+    assert load == pytest.approx(gas + inertia, abs=2e-3 * np.abs(load).max())
+    assert curves["limit of P_G,d"].y.tolist() == pytest.approx([30.0, 30.0])
+    assert curves["limit of P_G,z"].y.tolist() == pytest.approx([-20.0, -20.0])
+    # where it reverses it is zero
+    reversals = [mark.x for mark in panel.marks if mark.figure.name.symbol == "J"]
+    assert len(reversals) == 2
+    assert np.interp(reversals, curves["P_G"].x, curves["P_G"].y) == pytest.approx(0, abs=0.02)
+    assert "API 618: 15°, 3 %" in panel.title
+
+
+def test_rod_loads_are_drawn_of_compressors_alone() -> None:
+    assert "rod-load" in ids_of("compressor")
+    for name in ("triplex-pump", "punch", "diesel-two-stroke"):
+        assert "rod-load" not in ids_of(name)
+
+
+def test_the_error_of_the_approximations_is_largest_where_it_is_marked() -> None:
+    """L/R = 4 at 90°: x = R + L − √(L² − R²) exactly, and R (1 + λ/2) by the book."""
+    machine = loads("{speed: 60 rpm, crank: 200 mm, rod_ratio: 4}")
+    (picture,) = pictures(Case(machine), ("approximations",), PictureOptions())
+    displacement = picture.panels[0]
+    missing = 200.0 * (1 + 1 / 8) - (200.0 + 800.0 - np.sqrt(800.0**2 - 200.0**2))
+    lowest = min(displacement.marks, key=lambda mark: mark.y)
+    assert (lowest.x, lowest.y) == pytest.approx((90.0, missing), rel=1e-9)
+    assert displacement.title == f"at most {-missing / 4:.2g} % of s"
+    infinite = loads("{speed: 60 rpm, crank: 200 mm, rod_ratio: infinite}")
+    assert "approximations" not in ids_of(Case(infinite))

@@ -217,7 +217,9 @@ def test_every_machine_is_drawn_small_and_whole(name: str) -> None:
     for place, half, words in texts:
         assert left - 1 <= place.real - half <= place.real + half <= left + wide + 1, words
         assert top + 8 <= place.imag <= top + tall, words
-    notes = [one for one in texts if one[2] in {note.text for note in picture.panels[0].captions}]
+    notes = [
+        text for text in texts if text[2] in {note.text for note in picture.panels[0].captions}
+    ]
     for (one, half, _), (other, width, _) in combinations(notes, 2):
         assert abs(one.real - other.real) > half + width or abs(one.imag - other.imag) > 11
     assert any(words.startswith("To scale: ") for _, _, words in texts)

@@ -109,7 +109,7 @@ def test_every_mechanism_of_the_book_moves(name: str) -> None:
         assert apart % 360 == 0 if turning else apart == 0
     assert "prefers-reduced-motion" in text
     texts = ["".join(one.itertext()) for group in resting for one in group.iter()]
-    assert any("φ = " in one for one in texts)
+    assert any("φ = " in text for text in texts)
     assert not any("φ = " in "".join(group.itertext()) for group in moving)
     assert "animate" not in svg_file(drawn("waterworks", "forces"), Look())
     standing = svg_file(
@@ -162,7 +162,7 @@ def test_labels_are_clear_of_each_other_and_of_curves(names: list[str]) -> None:
     for picture in (
         picture for name in names for id in ids_of(name) for picture in drawn(name, id)
     ):
-        for panel in (one for one in picture.panels if not one.plain):
+        for panel in (panel for panel in picture.panels if not panel.plain):
             frame = frame_of(panel, {1: 660.0, 2: 293.0, 3: 170.0}[picture.across])
             result = frame.labels(named=False)
             assert not any(meet(one, other) for one, other in combinations(result, 2))
@@ -179,6 +179,6 @@ def test_labels_are_clear_of_each_other_and_of_curves(names: list[str]) -> None:
 def test_no_label_is_on_the_upright_axis() -> None:
     for id in ("forces", "effort", "bearing-loads"):
         text = svg_file(drawn("diesel-trace", id), Look())
-        places = [float(one) for one in re.findall(r'<text class="halo" x="([^"]+)"', text)]
+        places = [float(match) for match in re.findall(r'<text class="halo" x="([^"]+)"', text)]
         assert places
         assert min(places) >= 4

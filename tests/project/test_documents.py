@@ -187,13 +187,7 @@ GENERATED = {
 }
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=[pytest.mark.slow] if name == "machines.md" else [])
-        for name in GENERATED
-    ],
-)
+@pytest.mark.parametrize("name", GENERATED)
 def test_a_generated_page_is_current(name: str, kept: Callable[[Path, str], str]) -> None:
     text = GENERATED[name]()
     assert kept(ROOT / "docs" / name, text) == text

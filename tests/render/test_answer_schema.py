@@ -59,9 +59,9 @@ def validator() -> Draft7Validator:
     return Draft7Validator(schema)
 
 
-@pytest.mark.parametrize("asked", ANSWERS, ids=lambda asked: f"{asked[0]} {Path(asked[1]).stem}")
-def test_an_answer_keeps_the_schema(asked: list[str], validator: Draft7Validator) -> None:
-    ran = run(*asked, "-f", "json")
+@pytest.mark.parametrize("words", ANSWERS, ids=lambda words: f"{words[0]} {Path(words[1]).stem}")
+def test_an_answer_keeps_the_schema(words: list[str], validator: Draft7Validator) -> None:
+    ran = run(*words, "-f", "json")
     assert ran.exit_code in (0, 1)
     validator.validate(json.loads(ran.stdout))
 

@@ -73,7 +73,7 @@ COMPUTED = [([1 / 3], 2), ([100 / 3, 200 / 3, 360.0], 2), ([1 / 3, 1 / 3 + 1e-4]
 
 @pytest.mark.parametrize(("angles", "decimals"), [*WRITTEN, *COMPUTED])
 def test_crank_angles_have_the_decimals_they_need(angles: list[float], decimals: int) -> None:
-    """Written ones keep their decimals; computed ones have two, more only to be told apart."""
+    """Written ones keep their decimals; computed ones have two, more only where they would be alike."""
     assert head_scale(angles).decimals == decimals
 
 

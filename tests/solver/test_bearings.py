@@ -15,7 +15,7 @@ from command import answer
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.bearings import Bearing, BearingColumns
+from kurbel.solver.chapters.bearing import Bearing, BearingColumns
 from representative import CONFIGS, few
 
 ENGINE = re.sub(r"(?m)^oil_film:.*\n(  .*\n)+", "", CONFIGS["gas-engine"].read_text("utf-8"))

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from kurbel.errors import NoSolutionError
-from kurbel.machine.turning import Coupling, Load
+from kurbel.machine.shaft_side import Coupling, Load
 from kurbel.solver.chapters.coupling import natural_order
 from kurbel.solver.flywheel import MachineTurning
 from representative import few

@@ -2,12 +2,14 @@
 
 import json
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 import kurbel as api
 from command import run
+from kurbel.report.delivery import delivery_left_out
 from kurbel.solver.chapters.delivery import Delivery
 from representative import CONFIGS
 
@@ -515,3 +517,178 @@ def test_a_sweep_over_the_bore_of_a_differential_pump() -> None:
         for bore in (100, 110, 120)
     ]
     assert list(rows["flow_max"]) == pytest.approx(alone, rel=1e-13)
+
+
+SOFT = """\
+speed: 300 rpm
+stroke: 60 mm
+rod_ratio: 4
+bore: 40 mm
+crank_end_rod: 15 mm
+indicator: {head_end: {constant: {expansion: -0.2 bar, compression: 322 bar, clearance: 0.8}}, crank_end: mirrored}
+pump: {slip: 3 %, liquid: {bulk_modulus: 2.15 GPa}}
+"""
+
+
+def test_a_compressible_liquid_by_the_formula_of_the_handbooks() -> None:
+    """Power pumps: η_v = (1 − Δp β (1 + c/d))/(1 − Δp β), β = 1/K, c/d the clearance; of water 1.5 % at 322 bar."""
+    lost = 322.2e5 / 2.15e9
+    soft = pump_of(SOFT)
+    efficiency = (1 - lost * 1.8) / (1 - lost)
+    assert soft["volumetric_efficiency"].value == pytest.approx(0.97 * efficiency, rel=1e-12)
+    swept = math.pi / 4 * (2 * 0.04**2 - 0.015**2) * 0.06
+    assert soft["stroke_volume"].value == pytest.approx(swept, rel=1e-12)
+    # what is delivered has lost the share at its higher pressure
+    assert soft["flow_mean"].value == pytest.approx(5 * swept * 0.97 * (1 - 1.8 * lost), rel=1e-12)
+    # without clearance the pressure alone takes its share
+    tight = pump_of(SOFT.replace("0.8", "0"))
+    assert tight["volumetric_efficiency"].value == pytest.approx(0.97, rel=1e-12)
+    assert tight["flow_mean"].value == pytest.approx(5 * swept * 0.97 * (1 - lost), rel=1e-12)
+    assert lost == pytest.approx(0.015, abs=1e-4)
+
+
+def by_steps(K: float, clearance: float, count: int = 150_000) -> tuple[float, float, float]:
+    """Return volume delivered and drawn in, in m³, and the work in J of one end of `SOFT` per turn, step by step.
+
+    The mass in the chamber is kept in m³ at suction pressure; valves are open as long as the pressure is that of a pipe.
+    """
+    low, high, area, R, L = -0.2e5, 322e5, math.pi / 4 * 0.04**2, 0.03, 0.12
+    phi = np.linspace(0.0, 2 * np.pi, count + 1)
+    x = R * (1 - np.cos(phi)) + L - np.sqrt(L**2 - (R * np.sin(phi)) ** 2)
+    volumes = (area * (x + clearance * 2 * R)).tolist()
+    mass = volumes[0] / (1 - (high - low) / K)
+    pressure = high
+    delivered = drawn = work = 0.0
+    for before, volume in pairwise(volumes):
+        wanted = low + K * (1 - volume / mass)
+        next_pressure = min(max(wanted, low), high)
+        mass_then = volume / (1 - (next_pressure - low) / K)
+        if wanted > high:
+            delivered += (mass - mass_then) * (1 - (high - low) / K)
+        elif wanted < low:
+            drawn += mass_then - mass
+        work += (pressure + next_pressure) / 2 * (volume - before)
+        mass, pressure = mass_then, next_pressure
+    return delivered, drawn, work
+
+
+def test_a_compressible_liquid_step_by_step() -> None:
+    """A chamber followed over a turn by its mass: what it gives, draws in, and the work on it."""
+    for modulus, clearance in (("2.15 GPa", 0.8), ("0.3 GPa", 0.4)):
+        text = SOFT.replace("2.15 GPa", modulus).replace("0.8", str(clearance))
+        text = text.replace(", crank_end: mirrored", "").replace("slip: 3 %, ", "")
+        case = api.solve(api.loads(text))
+        pump = case.delivery.pump
+        assert pump is not None
+        K = float(modulus.split()[0]) * 1e9
+        delivered, drawn, work = by_steps(K, clearance)
+        assert pump["flow_mean"].value / 5 == pytest.approx(delivered, rel=3e-5)
+        share = drawn / pump["stroke_volume"].value
+        assert pump["volumetric_efficiency"].value == pytest.approx(share, rel=3e-5)
+        assert case.cylinders[0].work == pytest.approx(work, rel=3e-5)
+        # nothing flows before the valves open, where x is z s
+        lost = 322.2e5 / K
+        mechanism = case.cylinders[0].mechanism
+        fractions = np.array([clearance * lost / (1 - lost), 1 - (1 + clearance) * lost])
+        suction = mechanism.crank_angles_at(fractions[:1] * 0.06, True)[0]
+        delivery = mechanism.crank_angles_at(fractions[1:] * 0.06, False)[0]
+        angles = [suction - 0.01, suction + 0.01, delivery - 0.01, delivery + 0.01]
+        columns = pump.columns(angles, "flow", "flow_suction")
+        assert (columns["flow"] > 0).tolist() == [False, False, False, True]
+        assert (columns["flow_suction"] > 0).tolist() == [False, True, False, False]
+
+
+def test_valves_of_the_crank_end_and_of_a_turned_piston_open_late() -> None:
+    """With an infinite rod the crank end, and a piston that a lever turns round, do half a turn later what the head end does."""
+    text = SOFT.replace("rod_ratio: 4", "rod_ratio: infinite").replace("crank_end_rod: 15 mm\n", "")
+    angles = np.arange(3.0, 360.0, 6.0)
+    later = np.mod(angles + 180.0, 360.0)
+    double = pump_of(text)
+    head = double.columns(angles, "flow_head")["flow_head"]
+    crank = double.columns(later, "flow_crank")["flow_crank"]
+    assert crank == pytest.approx(head, rel=1e-9)
+    assert 0 < np.count_nonzero(head) < 30
+
+    # the same piston in tandem, beside one that idles
+    end = "{constant: {expansion: -0.2 bar, compression: 322 bar, clearance: 0.8}}"
+    flows = {}
+    for ratio in (1, -1):
+        tandem = f"[{{bore: 40 mm, lever_ratio: {ratio}, indicator: {{head_end: {end}}}}}]"
+        keys = "speed: 300 rpm\nstroke: 60 mm\nrod_ratio: infinite\nbore: 40 mm\n"
+        liquid = "pump: {slip: 3 %, liquid: {bulk_modulus: 2.15 GPa}}\n"
+        pump = pump_of(f"{keys}tandem: {tandem}\n{liquid}")
+        flows[ratio] = pump.columns(angles if ratio > 0 else later, "flow", "flow_suction")
+    for id in ("flow", "flow_suction"):
+        assert flows[-1][id] == pytest.approx(flows[1][id], rel=1e-9)
+    assert flows[1]["flow"] == pytest.approx(head, rel=1e-9)
+
+
+def test_many_compressible_pumps_are_those_of_each() -> None:
+    text = SOFT.replace("slip: 3 %, ", "")
+    varied = {
+        "pump.liquid.bulk_modulus": ["2.15 GPa", "1.4 GPa", "0.8 GPa", "0.5 GPa"],
+        "indicator.head_end.constant.clearance": ["0.8", "0", "0.4", "1.2"],
+        "indicator.head_end.constant.compression": ["322 bar", "300 bar", "80 bar", "200 bar"],
+    }
+    asked = ["flow_mean", "volumetric_efficiency", "volume_fluctuation", "work", "T_max", "dE"]
+    rows = api.sweep(api.loads(text), varied, asked)
+    for row in range(4):
+        keys = [f"{key}={values[row]}" for key, values in varied.items()]
+        single = api.solve(api.loads(text, overrides=keys))
+        for id in asked:
+            assert rows[id][row] == pytest.approx(single[id].value, rel=1e-11), (row, id)
+
+
+def test_net_positive_suction_head() -> None:
+    """(p_0 − p_v)/(ρ g) less lift, friction and acceleration, by hand where suction begins: dq/dt = A R ω²."""
+    pipe = "{length: 3 m, diameter: 100 mm, lift: LIFT}"
+    text = machine("one single-acting", "infinite", f"pump: {{suction_pipe: {pipe}}}")
+    h_a = 3 / (9.80665 * math.pi / 4 * 0.1**2) * AREA * STROKE / 2 * (2 * math.pi) ** 2
+    barometer = (101325 - 2339) / 9806.65
+    lifted = pump_of(text.replace("LIFT", "2.5 m"))
+    assert lifted["npsh_available"].value == pytest.approx(barometer - 2.5 - h_a, rel=1e-12)
+    assert lifted["suction_lift_max"].value == pytest.approx(barometer - h_a, rel=1e-12)
+    # flooded by 4 m from a closed tank of hot water
+    hot = "4 m, pressure: 2.2 bara}, liquid: {density: 958 kg/m3, vapour_pressure: 1.014 bar}"
+    flooded = pump_of(text.replace("LIFT}", f"-{hot}"))
+    head = (2.2e5 - 1.014e5) / (958 * 9.80665)
+    assert flooded["npsh_available"].value == pytest.approx(head + 4 - h_a, rel=1e-12)
+    # over the angle: where the flow is largest only friction would be left, here nothing
+    columns = flooded.columns([90.0], "npsh")
+    assert columns["npsh"] == pytest.approx([head + 4], rel=1e-12)
+
+
+def test_late_valves_do_not_spare_the_suction_pipe() -> None:
+    """What the pipe takes to accelerate the liquid in the dead centre is not saved by a valve that opens after it."""
+    pipe = "suction_pipe: {length: 3 m, diameter: 50 mm, lift: -1 m}, liquid: {%s}"
+    answers = []
+    for liquid in ("density: 998 kg/m3", "density: 998 kg/m3, bulk_modulus: 2 GPa"):
+        text = SOFT.replace("liquid: {bulk_modulus: 2.15 GPa}", pipe % liquid)
+        pump = pump_of(text)
+        answers.append([pump[id].value for id in ("npsh_available", "acceleration_head_max")])
+    assert answers[1] == pytest.approx(answers[0], rel=1e-12)
+
+
+def test_what_is_assumed_of_a_pump_is_listed() -> None:
+    vessel = "delivery_pipe: {length: 9 m, diameter: 50 mm, vessel: {volume: 9 l}}"
+    suction = "suction_pipe: {length: 3 m, diameter: 80 mm}"
+    text = machine("one single-acting", 5, f"pump: {{{suction}, {vessel}}}")
+    delivery = api.solve(api.loads(text)).delivery
+    listed = {item.what: item.why for item in delivery_left_out(delivery)}
+    assert listed == {
+        "exponent of the air in the delivery vessel": "no exponent given, 1 (isothermal air) is taken",
+        "vapour pressure of the liquid": (
+            "no vapour_pressure given, that of water at 20 °C, 0.02339 bar, is taken"
+        ),
+        "NPSH available": "no lift of the suction pipe given",
+    }
+    drawn = "{unit: bar, expansion: [[0, 3], [0.1, -0.2], [1, -0.2]], compression: [[1, -0.2], [0.9, 3], [0, 3]]}"
+    keys = f"speed: 60 rpm\nstroke: 200 mm\nrod_ratio: 5\nbore: 100 mm\nindicator: {{head_end: {drawn}}}\n"
+    for more, what in (
+        ("pump: {liquid: {bulk_modulus: 2 GPa}}", "compression of the liquid"),
+        ("pump: {slip: 2 %}", "pipes, vessels, suction lift"),
+    ):
+        delivery = api.solve(api.loads(f"{keys}{more}")).delivery
+        assert what in {item.what for item in delivery_left_out(delivery)}
+        assert delivery.pump is not None
+        assert "volumetric_efficiency" not in delivery.pump.answers

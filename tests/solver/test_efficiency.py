@@ -11,7 +11,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, Constant, Indicator
 from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston, RamForce
-from kurbel.machine.turning import Flywheel
+from kurbel.machine.shaft_side import Flywheel
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning

@@ -22,8 +22,8 @@ from kurbel.machine_file import loads
 from kurbel.mechanisms.link_rod import LinkedPiston
 from kurbel.mechanisms.oscillating_cylinder import OscillatingCylinder
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.balance import _of_knuckles
 from kurbel.solver.chapters.bearings import MasterPin
+from kurbel.solver.chapters.unbalanced import _of_knuckles
 from kurbel.solver.effort import torque_of_inertia
 from kurbel.solver.state import State, reduced_inertia
 
@@ -69,7 +69,7 @@ def rows_of(printed: dict[str, Any], figure: dict[str, Any]) -> dict[str, Any]:
 
 def column(columns: list[dict[str, Any]], id: str) -> list[Any]:
     """Return the values of a column."""
-    return next(one["values"] for one in columns if one["id"] == id)
+    return next(column["values"] for column in columns if column["id"] == id)
 
 
 def swept_volumes(path: Path, degrees: list[float]) -> list[float]:
@@ -104,7 +104,7 @@ def is_figure(text: str, figure: dict[str, Any], path: Path) -> None:
         return
     if "order" in figure:
         printed = answer(*words, path, "--orders")
-        (table,) = (one for one in printed["machine_place_tables"] if one["id"] == "orders")
+        (table,) = (table for table in printed["machine_place_tables"] if table["id"] == "orders")
         row = column(table["columns"], "order").index(figure["order"])
         value = column(table["columns"], figure["component"])[row]
         assert value == pytest.approx(figure["value"], rel=1e-7, abs=1e-9)
@@ -114,7 +114,7 @@ def is_figure(text: str, figure: dict[str, Any], path: Path) -> None:
         assert value == pytest.approx(figure["value"], rel=1e-9)
     else:
         rows = rows_of(answer(*words, path), figure)["key_values"]
-        (row,) = (one for one in rows if one["id"] == figure["key_value"])
+        (row,) = (row for row in rows if row["id"] == figure["key_value"])
         assert row["value"] == pytest.approx(figure["value"], rel=1e-9)
         if "at_deg" in figure:
             assert row["at_deg"] == pytest.approx(figure["at_deg"], abs=1e-3)

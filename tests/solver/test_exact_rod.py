@@ -11,7 +11,7 @@ from kurbel.declared.units import GRAVITY
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston
-from kurbel.machine.turning import Flywheel
+from kurbel.machine.shaft_side import Flywheel
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces

@@ -188,7 +188,7 @@ def wrong_signs(
     arc = np.searchsorted(found, angles) % max(len(found), 1)
     per_arc = [signs[arc == number] for number in range(max(len(found), 1))]
     mixed = sum(min((one > 0).sum(), (one < 0).sum()) for one in per_arc)
-    # an arc so short that no sample falls into it tells nothing of its neighbours
+    # an arc so short that no sample falls into it shows nothing of its neighbours
     means = [one.mean() if len(one) else math.nan for one in per_arc]
     same = sum(a == b for a, b in zip(means, [*means[1:], means[0]])) if len(found) else 0
     return int(mixed) + int(same)

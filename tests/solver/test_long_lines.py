@@ -7,11 +7,12 @@ import pytest
 
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftPart, line_of
-from kurbel.machine.turning import Effort, Load
+from kurbel.machine.shaft_side import Effort, Load
 from kurbel.solver.case import Case
 from kurbel.solver.chapters import torsion
+from kurbel.solver.chapters.excitation import Vibration, excitation
 from kurbel.solver.chapters.harmonics import every_order
-from kurbel.solver.chapters.torsion import ShaftVibration, Vibration, excitation
+from kurbel.solver.chapters.torsion import ShaftVibration
 
 EFFORT = Effort((0.0, 40.0, 90.0, 180.0, 270.0, 360.0), (-20.0, 300.0, 80.0, 0.0, -60.0, -20.0))
 """A turning-moment diagram with corners, in N m."""

@@ -20,7 +20,8 @@ from kurbel.machine_file import loads
 from kurbel.numerics.pieces import NOWHERE, Pieces
 from kurbel.solver.case import Case
 from kurbel.solver.chapters import bearings, oil_film
-from kurbel.solver.chapters.bearings import Bearing, RodPin
+from kurbel.solver.chapters.bearing import Bearing
+from kurbel.solver.chapters.bearings import RodPin
 from kurbel.solver.chapters.oil_film import FilmEquation, FilmShape, OilFilm
 from representative import CONFIGS
 
@@ -459,7 +460,7 @@ def plain_turning(bearing: RodPin) -> np.ndarray:
 
 
 def twice_entrained(equation: FilmEquation, pieces: Pieces) -> np.ndarray:
-    known = pieces.carried(equation._course, equation._pieces)
+    known = pieces.resampled(equation._course, equation._pieces)
     return known * np.array([1.0, 1.0, 2.0])[:, None, None]
 
 

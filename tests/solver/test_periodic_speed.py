@@ -14,7 +14,7 @@ from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Masses, Piston
-from kurbel.machine.turning import Flywheel, Load
+from kurbel.machine.shaft_side import Flywheel, Load
 from kurbel.machine_file import load, loads
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case

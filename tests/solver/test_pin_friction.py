@@ -11,7 +11,7 @@ from mpmath import atanh, ellipk
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.state import on_crosshead_pin, on_pin
+from kurbel.solver.state import crank_pin_force, crosshead_pin_force
 from representative import CONFIGS, few
 
 ENGINE = (
@@ -74,8 +74,8 @@ def test_a_rod_without_mass_is_in_equilibrium_with_friction_at_both_its_ends(
 ) -> None:
     """Forces of both pins and both moments, drawn in the plane, the crank pin at R e^{iφ}."""
     state = solved(PLAIN).at([degrees])
-    (along,), (across,) = on_crosshead_pin(state)
-    (radial,), (tangential,) = on_pin(state)
+    (along,), (across,) = crosshead_pin_force(state)
+    (radial,), (tangential,) = crank_pin_force(state)
     turned = np.exp(1j * np.radians(degrees))
     pin = 0.1 * turned
     crosshead = pin.real + math.sqrt(0.25**2 - pin.imag**2)
@@ -91,14 +91,14 @@ def test_a_rod_without_mass_is_in_equilibrium_with_friction_at_both_its_ends(
         * math.cos(math.radians(degrees))
         / math.sqrt(1 - (0.4 * math.sin(math.radians(degrees))) ** 2)
     )
-    crank = 0.05 * 0.030 * math.hypot(*(float(one[0]) for one in on_pin(frictionless)))
+    crank = 0.05 * 0.030 * math.hypot(*(float(one[0]) for one in crank_pin_force(frictionless)))
     crosshead_pin = (
-        0.06 * 0.020 * math.hypot(*(float(one[0]) for one in on_crosshead_pin(frictionless)))
+        0.06 * 0.020 * math.hypot(*(float(one[0]) for one in crosshead_pin_force(frictionless)))
     )
     couple = crank + math.copysign(crosshead_pin, slope)
     moment = ((crosshead - pin).conjugate() * at_crosshead).imag + couple
     assert abs(moment) <= 1e-12 * FORCE
-    journals = 0.03 * 0.035 * math.hypot(*(float(one[0]) for one in on_pin(frictionless)))
+    journals = 0.03 * 0.035 * math.hypot(*(float(one[0]) for one in crank_pin_force(frictionless)))
     assert state.M[0] == pytest.approx(0.1 * tangential - crank - journals, rel=1e-12)
 
 
@@ -198,7 +198,7 @@ def test_rods_of_one_throw_share_what_its_counterweight_loads_the_journals_with(
     for cylinder, place in zip(case.cylinders, (-apart / 2, apart / 2)):
         state = cylinder.at([15.0, 80.0, 200.0, 310.0])
         assert state.rubbing is not None
-        radial, tangential = on_pin(state.without_pin_friction)
+        radial, tangential = crank_pin_force(state.without_pin_friction)
         loads_of_journals = 0.0
         for share in ((55 - place) / 55, (55 + place) / 55):
             loads_of_journals += np.hypot(radial * share + pull, tangential * share) / 2

@@ -9,11 +9,13 @@ import pytest
 
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftPart, line_of
-from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
+from kurbel.machine.shaft_side import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.chain import Chain, Modes, holzer_at, response, row_of_joins
-from kurbel.solver.chapters.torsion import ShaftVibration, Vibration
+from kurbel.solver.chapters.chain import Chain, response, row_of_joins
+from kurbel.solver.chapters.excitation import Vibration
+from kurbel.solver.chapters.natural_modes import Modes, holzer_at
+from kurbel.solver.chapters.torsion import ShaftVibration
 from representative import CONFIGS, few
 
 ENDS = {"": 0, "before": 1, "after": 1, "both": 2}
@@ -185,7 +187,7 @@ def test_every_order_solves_its_equations(count: int, ground: str) -> None:
                 chain.mass_damping.tolist()
             )
             whole -= frequency**2 * mpmath.diag(chain.inertias.tolist())
-            sides = mpmath.matrix([complex(one) for one in torques[(slice(None), *place)]])
+            sides = mpmath.matrix([complex(torque) for torque in torques[(slice(None), *place)]])
             exact = mpmath.lu_solve(whole, sides)
         wanted = np.array([complex(one) for one in exact])
         assert result[(slice(None), *place)] == pytest.approx(

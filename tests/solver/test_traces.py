@@ -256,7 +256,7 @@ def test_cycles_one_below_the_other_are_those_of_columns(tmp_path: Path, lap: fl
 
 
 def test_cycles_at_other_angles_each(tmp_path: Path) -> None:
-    """A speed that is not quite even: every cycle has angles of its own; what is left over at the end is told."""
+    """A speed that is not quite even: every cycle has angles of its own; what is left over at the end is named."""
     angles, each = many()
     step = 0.5003
     counted = np.arange(0, 12 * 720 - 100, step)
@@ -314,7 +314,7 @@ def test_gross_and_net(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("level", [1.0, 3.7])
 def test_without_a_pumping_loop_there_is_no_pressure_of_it(tmp_path: Path, level: float) -> None:
-    """The same pressure through exhaust and intake: 1e-16 bar were told."""
+    """The same pressure through exhaust and intake: 1e-16 bar were printed."""
     one = np.where((FINE >= 180) & (FINE <= 540), level, absolute(ENGINE, FINE))
     result = forces(tmp_path, np.column_stack((FINE, one)))
     assert result["mean_pressure_exchange"].value == 0
@@ -486,7 +486,7 @@ def test_the_dead_centre_of_a_motored_trace(tmp_path: Path, zero: float, noise: 
     own = load(file)
     trace: Any = own.cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
     off = (trace.angle_zero - zero + 360) % 720 - 360
-    (note,) = [one for one in trace.notes if "angle_zero" in one]
+    (note,) = [note for note in trace.notes if "angle_zero" in note]
     doubt = float(note.split("uncertain by ")[1].split(" deg")[0])
     assert abs(off) <= 3 * doubt + 2e-3
     assert doubt < 0.1

@@ -255,7 +255,7 @@ VARIED = {
     "rod": ["900 mm", "1500 mm", "3000 mm"],
     "speed": ["60 rpm", "90 rpm"],
 }
-ASKED = [
+IDS = [
     "cut_off_head",
     "compression_crank",
     "valve_shift",
@@ -268,10 +268,10 @@ ASKED = [
 
 @pytest.mark.parametrize("key", VARIED)
 def test_machines_of_a_sweep_are_as_each_by_itself(key: str) -> None:
-    rows = kurbel.sweep(EQUAL_LEADS, {key: VARIED[key]}, ASKED)
+    rows = kurbel.sweep(EQUAL_LEADS, {key: VARIED[key]}, IDS)
     for row, text in enumerate(VARIED[key]):
         alone = cylinder(with_key(EQUAL_LEADS, key, text))
-        for id in ASKED:
+        for id in IDS:
             assert rows[id][row] == pytest.approx(alone[id].value, rel=1e-12), (id, text)
 
 

@@ -48,7 +48,7 @@ def test_forces_are_those_of_the_free_bodies() -> None:
     assert pytest.approx(result["T"], rel=1e-12) == state.T
     assert pytest.approx(result["D"], rel=1e-12) == state.D
     assert pytest.approx(result["T"] * R, rel=1e-12) == state.M
-    assert pytest.approx(result["along"], rel=1e-12) == state.along_rod
+    assert pytest.approx(result["along"], rel=1e-12) == state.along_stroke
     # the guides carry the weight and what the block drags across
     assert pytest.approx(MASS * 9.80665 + result["across"], rel=1e-12) == state.N
 

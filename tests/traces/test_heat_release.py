@@ -78,6 +78,15 @@ def test_heat_release_gives_the_function_of_wiebe_back(
     apart = (forces["heat_rate_max"].degrees - float(fine[top]) + 180) % 360 - 180
     assert abs(apart) < 0.3
 
+    # over the angle, at samples and between them, before and after combustion
+    degrees = np.arange(-60.05, 100.0, 0.55)
+    columns = forces.columns(degrees, "x_b", "dQ")
+    assert columns["x_b"] == pytest.approx(
+        burnt(degrees, start, duration) / burnt(100.0, start, duration), abs=1e-4
+    )
+    chords = burnt(degrees + 0.5, start, duration) - burnt(degrees - 0.5, start, duration)
+    assert columns["dQ"] == pytest.approx(HEAT * chords, abs=0.02)
+
 
 def test_the_pressures_of_these_tests_are_those_of_another_integrator() -> None:
     """dp = ((κ − 1) dQ − κ p dV)/V by an explicit Runge-Kutta method of order 8."""
@@ -103,11 +112,16 @@ def test_heat_is_printed_where_it_is_asked_for_alone(tmp_path: Path) -> None:
     path = tmp_path / "m.yaml"
     path.write_text(machine_text(tmp_path, columns, f", clearance: {CLEARANCE}, heat: {{}}"))
     printed = run("forces", str(path), "--key-values", "heat_released phi_burnt_50").output
-    assert "Heat released by the trace" in printed
+    assert "Heat released per cycle" in printed
+    table = run("forces", str(path), "--columns", "dQ,x_b", "-f", "csv", "--step", "5").output
+    assert table.splitlines()[0] == "phi_deg,dQ_J/deg,x_b"
     path.write_text(machine_text(tmp_path, columns, f", clearance: {CLEARANCE}"))
     refused = run("forces", str(path), "--key-values", "heat_released")
     assert refused.exit_code != 0
     assert "heat_released" in refused.output
+    refused = run("forces", str(path), "--columns", "x_b")
+    assert refused.exit_code != 0
+    assert "x_b" in refused.output
 
 
 def test_heat_needs_a_clearance(tmp_path: Path) -> None:

@@ -73,7 +73,7 @@ def test_the_speed_is_that_of_the_pressure(tmp_path: Path, cycles: float) -> Non
 
 
 def test_cycles_that_scatter_by_time(tmp_path: Path) -> None:
-    """The coefficient of variation is that of the cycles, of a recording told 0.3 % fast too."""
+    """The coefficient of variation is that of the cycles, also of a recording whose speed is given 0.3 % too high."""
     columns = recorded(12.0, 37e3, scatter=0.1)
     covs = []
     for factor in (1.0, 1.003):

@@ -97,7 +97,7 @@ def test_good_traces_of_other_machines_are_not_accused(
 def test_a_dead_centre_that_is_quarter_turns_off_is_found(
     tmp_path: Path, name: str, zero: float
 ) -> None:
-    """The head end of each, told with a wrong zero: the first thing to write is the right one."""
+    """The head end of each, with a wrong zero: the first thing to write is the right one."""
     pressures, role, clearance = MACHINES[name]
     keys = f", clearance: {clearance}, angle_zero: {zero:g} deg"
     notes = trace_notes(machine_text(tmp_path, pressures, keys, role))

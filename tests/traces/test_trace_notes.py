@@ -298,7 +298,7 @@ def test_four_strokes_reported_as_two(tmp_path: Path) -> None:
 
 
 def test_cycles_known_by_a_wrong_speed(tmp_path: Path) -> None:
-    """At 1500 rpm, told as 1515: the pressure shows the speed; with that nothing is left to say."""
+    """At 1500 rpm, given as 1515: the pressure shows the speed; with that nothing is left to say."""
     _, each = cycles(ENGINE, 12, 0.5, noise=0.05)
     file = written(tmp_path, np.arange(12 * 1440) * 0.5 / 9000, each.ravel())
     keys = ", angle_unit: s, recorded_speed: {:.7g} rpm"
@@ -312,7 +312,7 @@ def test_cycles_known_by_a_wrong_speed(tmp_path: Path) -> None:
 
 
 def test_the_brake_of_an_engine_of_four(tmp_path: Path) -> None:
-    """One cylinder is given: said, and asked for; with four of them all is well."""
+    """One cylinder is given: a note says so, and asks for the others; with four of them all is well."""
     power = 0.8 * 4 * indicated(FINE, late(0)) * 1e5 * np.pi / 4 * 0.09**2 * 0.1 * 25 / 2
     file = written(tmp_path, FINE, late(0))
     brake = f"brake_power: {power / 1e3:.5g} kW\n"

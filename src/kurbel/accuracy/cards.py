@@ -80,6 +80,32 @@ def drawn(
     return CardProcess(lines, mpf(card.diagram_factor), mpf(card.back_pressure) + lift)
 
 
+def of_liquid(process: CardProcess, clearance: Precise, modulus: Precise) -> CardProcess:
+    """Return the process of a pump whose liquid loses Δp/K of its volume at suction pressure; K: in Pa.
+
+    Of what fills the chamber at first the volume is 1 + c, of what stays in the clearance it is c at last.
+    """
+    suction, delivery = process.lines
+    is_level = (
+        suction.pressure == suction.end_pressure and delivery.pressure == delivery.end_pressure
+    )
+    lost = (delivery.pressure - suction.pressure) / modulus
+    if not is_level or lost <= 0:
+        return process
+    delivery_opens = (1 + clearance) * (1 - lost) - clearance
+    suction_opens = clearance / (1 - lost) - clearance
+    low = suction.pressure
+    high = delivery.pressure
+    corners = [
+        (0, mpf(0), high, suction_opens, low),
+        (0, suction_opens, low, mpf(1), low),
+        (1, mpf(1), low, delivery_opens, high),
+        (1, delivery_opens, high, mpf(0), high),
+    ]
+    lines = [StrokeLine(*corner, None, clearance) for corner in corners]
+    return CardProcess(tuple(line for line in lines if line.begin != line.end))
+
+
 def _rectangle(
     card: Rectangle, ambient: Precise, lift: Precise, is_four_stroke: bool
 ) -> Iterator[StrokeLine]:

@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import Union
 
 from kurbel.accuracy.methods import Precise, mp, mpf
-from kurbel.machine.turning import Effort, Harmonics
+from kurbel.machine.shaft_side import Effort, Harmonics
 
 Diagram = Union[Effort, Harmonics]
 

@@ -312,9 +312,9 @@ def dead_centres(motion: LeverMotion | LinkageMotion | LinkMotion) -> Array:
     if motion.never_returns:
         return halves
     slopes = np.frompyfunc(lambda phi, _: motion.at(phi).slope, 2, 1)
-    found, _ = roots_inside(slopes, halves[:-1] - 180, halves[1:] - 180, _STEPS)
-    inner = next(angle for angle in found if motion.at(angle).curvature > 0)
-    outer = next(angle for angle in found if motion.at(angle).curvature < 0)
+    roots, _ = roots_inside(slopes, halves[:-1] - 180, halves[1:] - 180, _STEPS)
+    inner = next(angle for angle in roots if motion.at(angle).curvature > 0)
+    outer = next(angle for angle in roots if motion.at(angle).curvature < 0)
     if outer < inner:
         outer += 360
     return np.array([inner, outer, 360 + inner])

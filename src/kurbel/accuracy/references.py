@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kurbel.accuracy.cards import KNOWN_CARDS
 from kurbel.accuracy.efforts import Diagram, diagram_of, knees_of
 from kurbel.accuracy.methods import MethodValue, Precise, by_gauss, integrals, merged, mpf
 from kurbel.accuracy.textbook import STEPS, TextbookCylinder
 from kurbel.arrays import Array
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.cylinder import crank_lag, work_alike
-from kurbel.machine.turning import Swing
+from kurbel.machine.shaft_side import Swing
 
 if TYPE_CHECKING:
     from kurbel.traces.correct import Trace
@@ -49,6 +50,8 @@ def unknown(machine: Machine, quantity: str) -> Iterator[str]:
             for card in piston.chambers.values():
                 if card.traced:
                     yield from _unknown_of_trace(card, quantity)
+                elif not isinstance(card, KNOWN_CARDS):
+                    yield "a card by Wiebe"
         friction = cylinder.friction
         if friction and friction.journals and machine.crankshaft is not None:
             yield "journals that rub in the bearings of a crankshaft"
@@ -125,6 +128,7 @@ class Textbook:
             machine.cycle,
             machine.inclination_of(cylinder),
             machine.crankshaft,
+            machine.pump,
         )
         links = []
         for link in machine.cylinders:

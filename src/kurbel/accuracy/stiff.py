@@ -53,11 +53,13 @@ class SpeedTrial(NamedTuple):
     ratio: float
 
 
+def _numbers_of(column: str) -> list[Precise]:
+    return [mpf(number) for number in column.split()]
+
+
 def reference_of(columns: Sequence[str]) -> SpeedOfShaft:
     """Return the reference in the last columns of a line of `stiff.tsv`."""
-    omega, delta, omega_max, M_K = (
-        [mpf(number) for number in column.split()] for column in columns
-    )
+    omega, delta, omega_max, M_K = map(_numbers_of, columns)
     return SpeedOfShaft(np.array(omega), delta[0], omega_max[0], tuple(M_K))
 
 

@@ -23,7 +23,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.accuracy.cards import KNOWN_CARDS, CardProcess, Fractions, StrokeLine, drawn
+from kurbel.accuracy.cards import (
+    KNOWN_CARDS,
+    CardProcess,
+    Fractions,
+    StrokeLine,
+    drawn,
+    of_liquid,
+)
 from kurbel.accuracy.jets import Jet
 from kurbel.accuracy.linkages import (
     LinkMotion,
@@ -33,6 +40,7 @@ from kurbel.accuracy.linkages import (
     moment,
     motion_of,
 )
+from kurbel.accuracy.loads import TextbookLoads
 from kurbel.accuracy.methods import (
     Precise,
     integrals,
@@ -202,13 +210,12 @@ class TextbookCylinder:
         self._crankshaft = machine.crankshaft
         self._set_masses(machine.inclination_of(cylinder))
         self._set_friction(cylinder.friction)
-        resistance = cylinder.ram_force or cylinder.moment
         link_rod = cylinder.link_rod
         self._knuckle_mass = mpf(link_rod.knuckle_mass if link_rod else 0.0)
-        self._resistance = [mpf(0), mpf(0)]
-        if resistance is not None:
-            self._resistance = [mpf(resistance.work), mpf(resistance.back)]
-
+        motion = self.motion
+        self._loads_on_output = TextbookLoads(
+            cylinder, motion.stroke, self.turns, motion.works_out, motion.never_returns
+        )
         self.pistons = [self._piston(machine, number) for number in range(len(cylinder.pistons))]
         self._piece = cache(self._piece_of)
         self._states: dict[tuple[int, int], Forces] = {}
@@ -302,6 +309,10 @@ class TextbookCylinder:
                 shares = np.array([self._share(angle) for angle in events_of(valve, end)])
                 events = Fractions(*(shares if is_head else 1 - shares))
             drawing = drawn(card, lift, turns == 2, self._ambient, events)
+            modulus = machine.pump.liquid.bulk_modulus if machine.pump else None
+            if modulus is not None and len(drawing.lines) == 2:
+                clearance = mpf(getattr(card, "clearance", None) or 0.0)
+                drawing = of_liquid(drawing, clearance, mpf(modulus))
             strokes = 1 + max(line.stroke for line in drawing.lines)
             chambers.append(TextbookChamber(drawing, sign, area, strokes))
         work = sum((chamber.work for chamber in chambers), mpf(0))
@@ -348,6 +359,7 @@ class TextbookCylinder:
         for piston in self.pistons:
             for chamber in piston.chambers:
                 shares |= chamber.shares(stroke)
+        shares |= self._loads_on_output.fractions(is_back=stroke % 2 == 1)
         return shares - {0, 1}
 
     @cached_property
@@ -376,10 +388,9 @@ class TextbookCylinder:
         back = since - 360 * turn > outer - inner
         share = self._share(within)
         stroke = 2 * turn + back
-        lines = [
-            [chamber.line_at(stroke, share, within) for chamber in piston.chambers]
-            for piston in self.pistons
-        ]
+        lines = []
+        for piston in self.pistons:
+            lines.append([chamber.line_at(stroke, share, within) for chamber in piston.chambers])
         return -1 if back and not self.motion.never_returns else 1, lines
 
     # forces
@@ -400,21 +411,22 @@ class TextbookCylinder:
         pose = self.motion.at(phi)
         sense, lines = self._piece(within)
         gas = self._gas(phi, pose, lines)
-        resistance = self._resistance[0 if (sense > 0) == self.motion.works_out else 1]
+        share = (pose.x - self.motion.start) / self.motion.stroke
+        load = self._loads_on_output.at(share, self._share(within), sense)
+        driving = gas.driving + load if self._loads_on_output.work > IDLE else gas.driving
         steady = self._rings + self._ring_surface * abs(gas.difference)
 
         # along the stroke line, without a rod
-        push = gas.force - sense * (resistance + steady)
+        push = gas.force + load - sense * steady
         push += self._parts * (self._g[0] - self.omega**2 * pose.curvature)
         if isinstance(self.motion, LinkMotion):
-            return self._on_knuckle(phi, pose, sense, push, gas, steady)
+            with_loads = gas._replace(driving=driving)
+            return self._on_knuckle(phi, pose, sense, push, with_loads, steady)
         if not isinstance(self.motion, RodMotion):
             M = self.motion.torque_of(push, phi)
             friction = -sense * steady
             kinks = (gas.difference,)
-            return Forces(
-                pose.slope, gas.force, gas.driving, friction, {}, M / self.motion.r, M, kinks
-            )
+            return Forces(pose.slope, gas.force, driving, friction, {}, M / self.motion.r, M, kinks)
 
         # on the crank pin
         side = mp.sign(mp.cospi(within / 180))
@@ -427,7 +439,7 @@ class TextbookCylinder:
         T = M / self.motion.r
         friction = -sense * (loads.drag + steady)
         kinks = (*loads.kinks, gas.difference)
-        return Forces(pose.slope, gas.force, gas.driving, friction, losses, T, M, kinks)
+        return Forces(pose.slope, gas.force, driving, friction, losses, T, M, kinks)
 
     def _gas(self, phi: Precise, pose: Stance, lines: list[list[Line]]) -> GasForces:
         """Return the forces of the gas on all pistons."""
@@ -591,13 +603,15 @@ class TextbookCylinder:
 
     @property
     def is_driven(self) -> bool:
-        """Whether a piston is driven, or the output works against a resistance."""
-        return any(piston.work < -IDLE for piston in self.pistons) or any(self._resistance)
+        """Whether a piston is driven, or the output works against its loads."""
+        is_moved = self._loads_on_output.work < -IDLE
+        return bool(is_moved) or any(piston.work < -IDLE for piston in self.pistons)
 
     @property
     def drives(self) -> bool:
-        """Whether a piston drives."""
-        return any(piston.work > IDLE for piston in self.pistons)
+        """Whether a piston drives, or the loads on the output."""
+        is_driving = self._loads_on_output.work > IDLE
+        return bool(is_driving) or any(piston.work > IDLE for piston in self.pistons)
 
 
 def _radius(coefficient: float | None, diameter: float | None) -> Precise:

@@ -43,10 +43,10 @@ def events_of(valve: Valve, end: str) -> ValveEvents:
     def passed(lap: Precise, sense: int, beyond: int, otherwise: int) -> Precise:
         """Return where an edge passes that of the port on the stroke that begins at an angle."""
         uncovered = np.frompyfunc(lambda phi, _: sense * displacement(phi) - lap, 2, 1)
-        found, _ = roots_inside(
+        roots, _ = roots_inside(
             uncovered, np.array([mpf(beyond)]), np.array([mpf(beyond + 180)]), _STEPS
         )
-        return found[0] if len(found) else mpf(otherwise)
+        return roots[0] if len(roots) else mpf(otherwise)
 
     steam, exhaust = laps
     return ValveEvents(

@@ -9,6 +9,7 @@ from kurbel.checks.limits import (
     CheckEntry,
     JudgedFigure,
     compared_entries,
+    load_cases_of,
     margin_text,
     margins,
 )
@@ -31,7 +32,7 @@ from kurbel.notes.warnings import Note, as_far_as_solved, machine_notes
 from kurbel.solver.case import Case
 from kurbel.solver.drive import any_of
 from kurbel.solver.forces import CylinderForces
-from kurbel.tables.tables import LeftOut, grouped, together
+from kurbel.tables.tables import LeftOut, grouped, joined_names
 
 _EVEN = 0.5
 """Difference of firing intervals in degrees that rounded angles explain."""
@@ -66,7 +67,7 @@ class Checked(NamedTuple):
         )
         merged = []
         for group in groups:
-            title = together([topic.title for topic in group])
+            title = joined_names([topic.title for topic in group])
             merged.append(group[0]._replace(title=title))
         return merged
 
@@ -303,7 +304,7 @@ def _oil_film_entries(case: Case) -> Iterator[CheckEntry]:
         yield CheckEntry("oil film", text, "warning", path)
     with_film = [bearing.name for bearing in bearings if bearing.oil and not bearing.film_obstacle]
     if with_film:
-        yield CheckEntry("computed", f"oil film of {together(with_film)}")
+        yield CheckEntry("computed", f"oil film of {joined_names(with_film)}")
     for bearing in bearings:
         if bearing.film_obstacle:
             yield _left_out(f"oil film of {bearing.name}: {bearing.film_obstacle}", path)
@@ -391,7 +392,7 @@ def _delivery_entries(case: Case) -> Iterator[CheckEntry]:
 def _margin_entries(judged: Iterable[CheckEntry], name: str) -> Iterator[CheckEntry]:
     """Yield a line of heads and one for each limit: its smallest margin in the machine itself and in each load case."""
     table = margins(judged)
-    cases = list(dict.fromkeys(case for of_limit in table.values() for case in of_limit))
+    cases = load_cases_of(table)
     if not cases:
         return
     heads = [case or name for case in cases]

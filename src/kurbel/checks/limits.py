@@ -9,7 +9,7 @@ import numpy as np
 
 from kurbel.declared.forms.figures import MACHINE, Bound, Expected, scoped
 from kurbel.declared.reading import text_in_one_line
-from kurbel.declared.unit_systems import SI, convert
+from kurbel.declared.unit_systems import SI, convert, requested_system, shown_unit
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
@@ -20,7 +20,7 @@ from kurbel.report.commands import COMMANDS, subjects_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame, Subject, report_on
 from kurbel.tables.shown import PlaceRow, Places, too_large
-from kurbel.tables.tables import Report, grouped, together
+from kurbel.tables.tables import Report, grouped, joined_names
 
 _ROUNDING = 1e-9
 """Relative tolerance of a bound: a stroke of 110 mm does not break a limit of 110 mm through rounding."""
@@ -109,7 +109,7 @@ def _judged_figure(
     # equal ones are compared once
     is_within = True
     for equal in grouped(values, lambda owner_and_value: f"{owner_and_value[1]:.9g}"):
-        owners = together([owner for owner, _ in equal])
+        owners = joined_names([owner for owner, _ in equal])
         _, value = equal[0]
         verdict = _compared(path, quantity, bound, owners, value)
         is_within = is_within and verdict.severity == "info"
@@ -148,7 +148,7 @@ def _compared(
         _margin(quantity, bound, value),
         "PASS" if is_met else "FAIL",
     )
-    unit = bound.unit
+    unit = _unit_of(bound, quantity.kind, value)
     number = 100 * value if unit == "%" else float(convert(value, quantity.kind, unit))
     return CheckEntry(
         name,
@@ -169,10 +169,14 @@ def _margin(quantity: Quantity, bound: Bound | Expected, value: float) -> float 
     if isinstance(bound, Expected):
         distance = min(value - bound.low, bound.high - value)
         edge = bound.low if value - bound.low < bound.high - value else bound.high
-        return distance / abs(edge) if edge else None
+        if not edge:
+            return None
+        return distance / abs(edge)
     magnitude = abs(value) if quantity.id.endswith("_residual") else value
     distance = magnitude - bound if quantity.bounded_below else bound - magnitude
-    return distance / abs(bound) if bound else None
+    if not bound:
+        return None
+    return distance / abs(bound)
 
 
 def margins(entries: Iterable[CheckEntry]) -> dict[str, dict[str, float]]:
@@ -184,8 +188,16 @@ def margins(entries: Iterable[CheckEntry]) -> dict[str, dict[str, float]]:
             continue
         of_limit = smallest.setdefault(str(entry.path[-1]), {})
         of_limit[figure.case] = min(figure.margin, of_limit.get(figure.case, figure.margin))
-    has_cases = any(case for of_limit in smallest.values() for case in of_limit)
+    has_cases = any(load_cases_of(smallest))
     return smallest if has_cases else {}
+
+
+def load_cases_of(table: Mapping[str, Mapping[str, float]]) -> list[str]:
+    """Return the load cases of a table of margins, in the order in which they first occur; '' is the machine itself."""
+    cases = dict[str, None]()
+    for of_limit in table.values():
+        cases |= dict.fromkeys(of_limit)
+    return list(cases)
 
 
 def margin_text(margin: float | None) -> str:
@@ -194,7 +206,9 @@ def margin_text(margin: float | None) -> str:
     >>> margin_text(0.0389), margin_text(-1.7), margin_text(None)
     ('+3.9 %', '-170.0 %', '–')
     """
-    return "–" if margin is None else f"{100 * margin:+.1f} %"
+    if margin is None:
+        return "–"
+    return f"{100 * margin:+.1f} %"
 
 
 def _compared_with_expected(
@@ -202,9 +216,10 @@ def _compared_with_expected(
 ) -> tuple[str, str, bool]:
     """Return the verdict on a value in SI, what is expected, and whether it is met."""
     kind = quantity.kind
+    unit = _unit_of(expected, kind, value)
     limit = expected.text
-    if not limit:
-        limit = f"{_shown(expected.low, kind, '')} to {_shown(expected.high, kind, '')}"
+    if not limit or unit != expected.unit:
+        limit = f"{_shown(expected.low, kind, unit)} to {_shown(expected.high, kind, unit)}"
     too_small_by = expected.low - value
     too_large_by = value - expected.high
     deviation = max(too_small_by, too_large_by)
@@ -212,18 +227,19 @@ def _compared_with_expected(
     verdict = "PASS"
     if not is_met:
         size = "small" if too_small_by > too_large_by else "large"
-        verdict = f"FAIL, {_shown(deviation, kind, expected.unit)} too {size}"
-    shown = _shown_value(quantity, value, expected.unit)
+        verdict = f"FAIL, {_shown(deviation, kind, unit, is_difference=True)} too {size}"
+    shown = _shown_value(quantity, value, unit)
     return f"{shown}, expected {limit}  {verdict}", limit, is_met
 
 
 def _compared_with_bound(quantity: Quantity, bound: Bound, value: float) -> tuple[str, str, bool]:
     """Return the verdict on a value in SI, the bound, and whether it is met."""
-    shown = _shown_value(quantity, value, bound.unit)
+    unit = _unit_of(bound, quantity.kind, value)
+    shown = _shown_value(quantity, value, unit)
     counts_by_magnitude = quantity.id.endswith("_residual")
     if counts_by_magnitude and not quantity.is_noise(value):
         shown = f"|{shown}|"
-    shown_bound = _shown(bound, quantity.kind, bound.unit)
+    shown_bound = _shown(bound, quantity.kind, unit)
     met_sign, broken_sign = ("≥", "<") if quantity.bounded_below else ("≤", ">")
     limit = f"{met_sign} {shown_bound}"
     if breaks(quantity, bound, value):
@@ -245,11 +261,19 @@ def breaks(quantity: Quantity, bound: float, value: float) -> bool:
     return excess > _ROUNDING * abs(bound)
 
 
-def _shown(value: float, kind: str, unit: str) -> str:
-    """Return a value with its unit, which is that of the file if it has one."""
+def _unit_of(figure: Bound | Expected, kind: str, value: float) -> str:
+    """Return the unit in which a figure is compared: that of the file, or of the unit system that is requested."""
+    system = requested_system()
+    if not system or figure.unit == "%":
+        return figure.unit
+    return shown_unit(kind, system, value)
+
+
+def _shown(value: float, kind: str, unit: str, is_difference: bool = False) -> str:
+    """Return a value with its unit, which is that of SI where it is ''."""
     if unit == "%":
         return f"{100 * value:.9g} %"
-    return f"{convert(value, kind, unit):.9g} {unit or SI[kind]}".rstrip()
+    return f"{convert(value, kind, unit, is_difference):.9g} {unit or SI[kind]}".rstrip()
 
 
 def _beyond_by_sign(
@@ -278,7 +302,7 @@ def _beyond_by_sign(
     with suppress(KurbelError):
         for where, value in _values(case, other):
             if -value * sign > abs(bound) * (1 + _ROUNDING):
-                size = _shown(value, quantity.kind, bound.unit)
+                size = _shown(value, quantity.kind, _unit_of(bound, quantity.kind, value))
                 text = f"{other} = {size} is beyond it with the other sign; {advice}  ({where})"
                 yield CheckEntry(str(path[-1]), text, "warning", path)
 
@@ -354,7 +378,9 @@ def _has_value(holder: Holder) -> bool:
 def name_of(case: Case) -> str:
     """Return the name of a load case, or of the machine itself."""
     machine = case.machine
-    return machine.origin.case if machine.origin else machine.name
+    if machine.origin:
+        return machine.origin.case
+    return machine.name
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name

@@ -8,6 +8,7 @@ from kurbel.pictures.pictures import PICTURES, pictures, pictures_of
 from kurbel.render import Look
 from kurbel.render.drawing import check_file, check_poster, draw_output, draw_poster
 from kurbel.render.output import write_entries
+from kurbel.render.paper import A4
 
 
 def draw_pictures(
@@ -19,6 +20,7 @@ def draw_pictures(
     file_name: str | None,
     angles: tuple[float, ...] | None,
     size: str | None,
+    paper: str | None,
     cylinder: str | None,
     units: str | None,
     comma: bool,
@@ -42,6 +44,11 @@ def draw_pictures(
         names = ("mechanism",)
     elif file_name is not None:
         check_file(file_name)
+    is_pdf = file_name is not None and file_name.lower().endswith(".pdf")
+    if paper is not None and (size is not None or not is_pdf):
+        raise click.UsageError(
+            f"--paper {paper} is for pictures in a pdf; give --output NAME.pdf, and no --poster."
+        )
 
     # the list of pictures: all, or those of the machine
     options = PictureOptions(units or "metric", cylinder, angles)
@@ -58,4 +65,4 @@ def draw_pictures(
 
         facts = tiles(facts_of(case).values(), options.system)
         return draw_poster(next(drawn), subtitle_of(case.machine), facts, look, file_name, size)
-    draw_output(drawn, look, file_name)
+    draw_output(drawn, look, file_name, paper or A4)

@@ -16,7 +16,7 @@ from kurbel.render.output import refuse_overwriting, write_out
 from kurbel.render.solutions import as_json, as_rows, picture, remarks
 from kurbel.render.sweep_rows import write_rows
 
-_SUFFIXES = {".csv": "csv", ".json": "json", ".md": "markdown"}
+_SUFFIXES = {".csv": "csv", ".json": "json", ".xlsx": "xlsx", ".md": "markdown"}
 _DIGITS = 7
 """Significant digits of a table: values are found to be written into a file."""
 
@@ -70,7 +70,7 @@ def run_find(
         text = json.dumps(as_json(solutions), ensure_ascii=False, allow_nan=False, indent=1)
         write_out([text + "\n"], file_name, "utf-8")
     else:
-        usual_digits = None if written == "csv" else _DIGITS
+        usual_digits = None if written in ("csv", "xlsx") else _DIGITS
         look = Look(written, comma=comma, digits=digits or usual_digits)
         titles, rows = as_rows(solutions, system)
         write_rows(rows, titles, look, file_name, to_stderr)

@@ -88,7 +88,7 @@ _what_is_printed = stacked(
     ),
 )
 _where_it_goes = stacked(
-    format_option("table", "csv", "json", "markdown", "parquet"),
+    format_option("table", "csv", "json", "xlsx", "markdown"),
     output_option,
     number_options,
     click.option(
@@ -174,7 +174,7 @@ def sweep(**options: Any) -> None:
     "--take", type=click.IntRange(1), metavar="N", help="With --write, the solution of this number."
 )
 @units_option
-@format_option("table", "csv", "json", "markdown")
+@format_option("table", "csv", "json", "xlsx", "markdown")
 @output_option
 @number_options
 def find(**options: Any) -> None:

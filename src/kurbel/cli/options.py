@@ -9,6 +9,7 @@ import click
 
 from kurbel.cli.group import KurbelCommand
 from kurbel.declared.numerals import parse_ratio
+from kurbel.declared.unit_systems import messages_in
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
 from kurbel.quantity import Lists, ambiguity
@@ -90,7 +91,7 @@ def words(text: str) -> tuple[str, ...]:
     """Return words separated by commas, in the order given, at least one; empty ones are skipped."""
     names = tuple(filter(None, map(str.strip, text.split(","))))
     if not names:
-        raise click.BadParameter(f"'{text}' names no column; leave the option out, or name one")
+        raise click.BadParameter(f"'{text}' names nothing; leave the option out, or name one")
     return names
 
 
@@ -203,6 +204,13 @@ def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
     return [*(picture.id for picture in PICTURES), "all"]
 
 
+def _sections(ctx: click.Context, begun: str) -> Iterable[str]:
+    """Return the sections of a report that are not in the list yet."""
+    from kurbel.page.contents import SECTIONS
+
+    return _not_listed_yet(SECTIONS, begun)
+
+
 complete_ids = completing(_ids)
 complete_key_values = completing(_key_values)
 complete_key = completing(_keys)
@@ -214,6 +222,7 @@ complete_cylinder = completing(
 )
 complete_case = completing(lambda ctx, _: [case.name for case in _machine(ctx).cases])
 complete_picture = completing(_pictures)
+complete_section = completing(_sections)
 
 
 # --- the options
@@ -352,12 +361,32 @@ part_options = stacked(
         help="Print everything, also on a terminal with too few lines for it.",
     ),
 )
+
+
+def _write_messages_in(
+    context: click.Context, parameter: click.Parameter, system: str | None
+) -> str | None:
+    """Write the messages of a command in the unit system that is requested, and return it."""
+    if system:
+        context.with_resource(messages_in(system))
+    return system
+
+
 units_option = click.option(
     "--units",
     type=click.Choice(["si", "metric", "technical", "imperial"]),
-    help="metric: mm, bar, kN, the default of tables and markdown; technical: mm, kgf, at, as the old books; "
-    "imperial: in, lbf, psi; si: the default of csv and json.",
+    callback=_write_messages_in,
+    is_eager=True,  # the other options have messages, too
+    help="metric: mm, bar, kN, the default of tables and workbooks; technical: mm, kgf, at, as the old books; "
+    "imperial: in, lbf, psi, deg F; si: the default of csv and json.",
 )
+
+
+def paper_option(*sizes: str, text: str) -> Callable[[Command], Command]:
+    """Return the option of the size of paper, None if not given."""
+    return click.option("--paper", type=click.Choice(sizes, case_sensitive=False), help=text)
+
+
 width_option = click.option(
     "--width",
     type=click.IntRange(20, 100_000),
@@ -383,7 +412,7 @@ number_options = stacked(
     click.option(
         "--digits",
         type=click.IntRange(1, 17),
-        help="Significant digits; if not given 4, and all in csv and json.",
+        help="Significant digits; if not given 4, and all in csv, json and xlsx.",
     ),
 )
 _look_options = stacked(
@@ -439,6 +468,7 @@ uncertainty_option = click.option(
 _SUFFIXES = {
     ".csv": "csv",
     ".json": "json",
+    ".xlsx": "xlsx",
     ".md": "markdown",
     ".markdown": "markdown",
     ".html": "html",
@@ -472,8 +502,13 @@ def format_of(
             f"which means {of_suffix}; change one of them."
         )
     written = requested or of_suffix or "table"
-    if comma and written in ("json", "parquet"):
-        raise click.UsageError(f"--decimal comma: {written} has the decimal point only.")
+    if comma and written == "json":
+        raise click.UsageError("--decimal comma: json has the decimal point only.")
+    if written == "xlsx":
+        refuse_contradictions(
+            (comma, "--decimal comma: Excel shows the decimal sign that it is set to."),
+            (file_name in (None, "-"), "A workbook is a file; give --output FILE.xlsx."),
+        )
     return written
 
 

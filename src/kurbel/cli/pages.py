@@ -7,6 +7,7 @@ import click
 from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
     complete_picture,
+    complete_section,
     cylinder_option,
     format_of,
     format_option,
@@ -15,9 +16,11 @@ from kurbel.cli.options import (
     numbers,
     output_option,
     output_options,
+    paper_option,
     set_options,
     units_option,
     width_option,
+    words,
 )
 
 
@@ -40,14 +43,28 @@ from kurbel.cli.options import (
     metavar="DEGREES",
     help="Step of the tables; 15 if not given.",
 )
+@click.option(
+    "--sections",
+    "section_words",
+    type=words,
+    metavar="WORD,...",
+    shell_complete=complete_section,
+    help="Only these after the first page: commands, as bearings; answers or pictures of all; tables, which are then "
+    "printed, too; energy, left-out, input; or all.",
+)
+@click.option(
+    "--short", is_flag=True, help="First page, answers and input: --sections answers,input."
+)
+@paper_option("a4", "letter", text="Size of the printed page; a4 if not given.")
 @click.option("--title", help="Title of the page; the name of the machine if not given.")
 @units_option
 @number_options
 def report(**options: Any) -> None:
     """Write a full report on the machine in FILE: input, pictures, tables, key values, limits, energy balance.
 
-    The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
-    with their differences. --set holds for each of them. FILE may be - for standard input.
+    The page needs no script and nothing from the net; it can be read, printed and sent. Tables over the crank angle
+    are printed only if the box above them is ticked, or --sections names them. Two files are put side by side, with
+    their differences. --set holds for each of them. FILE may be - for standard input.
     """
     from kurbel.cli.showing import write_page
 
@@ -77,6 +94,12 @@ def report(**options: Any) -> None:
     metavar="A0|...|A5",
     help="The machine in section as a wall sheet, to a pdf or svg.",
 )
+@paper_option(
+    "a4",
+    "letter",
+    "fit",
+    text="Sheets of a pdf, each with one picture or one crank angle: a4 if not given; fit: one sheet of its size.",
+)
 @cylinder_option
 @units_option
 @number_options
@@ -86,7 +109,7 @@ def plot(**options: Any) -> None:
 
     Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked. Without -o
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
-    and pdf need typst. FILE may be - for standard input.
+    and pdf, a page for each picture, need typst. FILE may be - for standard input.
     """
     from kurbel.cli.drawing import draw_pictures
 
@@ -105,9 +128,10 @@ def plot(**options: Any) -> None:
     said="json: every finding with its place; junit: XML that CI services read. ",
 )
 @click.option("--quiet", "-q", is_flag=True, help="Print what FAILs, and nothing else.")
+@units_option
 @output_option
 @width_option
-def check(format: str | None, file_name: str | None, **options: Any) -> int:
+def check(format: str | None, file_name: str | None, units: str | None, **options: Any) -> int:
     """Check the machine in each FILE: list what will be computed, what is left out and why.
 
     Where the file gives 'limits', hold the key values to them, in every one of its 'cases'; where it gives 'expect',

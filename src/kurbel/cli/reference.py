@@ -214,7 +214,8 @@ def keys(key: str | None) -> None:
 def units(kind: str | None) -> None:
     """List the units that a machine file may use, a line for each kind of quantity; or only those of KIND.
 
-    Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2.
+    Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2; lengths also as 12 ft 6 in or
+    1 3/4 in. Products that are seldom written, such as kN/in2, are read, too.
     """
     lines = {name.replace("_", " "): ", ".join(listed_units(name)) for name in kinds()}
     if kind is None:

@@ -22,7 +22,6 @@ from kurbel.cli.options import (
     units_option,
     where_option,
 )
-from kurbel.declared.unit_systems import messages_in
 from kurbel.render.formats import Output
 from kurbel.report.commands import Command as Row
 
@@ -103,8 +102,7 @@ def command_of(row: Row) -> click.Command:
         from kurbel.cli.request import print_report
 
         usual_system = "si" if output.look.format in ("csv", "json") else "metric"
-        with messages_in(units or "metric"):
-            print_report(row.word, output, units=units or usual_system, **options)
+        print_report(row.word, output, units=units or usual_system, **options)
 
     # the options, in the order of the help
     options: list[Callable[..., Any]] = [machine_file]

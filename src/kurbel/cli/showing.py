@@ -9,9 +9,11 @@ import click
 from kurbel.cli.group import ProgressLine
 from kurbel.cli.request import case_of, cases_of
 from kurbel.machine_file.overrides import key_texts
+from kurbel.page.contents import SHORT, Contents
 from kurbel.page.whole import side_by_side, whole_report
 from kurbel.render import Look
 from kurbel.render.output import refuse_overwriting, write_out
+from kurbel.render.paper import A4
 from kurbel.render.report_page import report_page
 
 
@@ -21,6 +23,9 @@ def write_page(
     overrides: tuple[str, ...],
     file_name: str | None,
     step: float,
+    section_words: tuple[str, ...] | None,
+    short: bool,
+    paper: str | None,
     title: str | None,
     units: str | None,
     comma: bool,
@@ -38,6 +43,9 @@ def write_page(
             )
     elif file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
+    if short and section_words is not None:
+        raise click.UsageError("--short is --sections answers,input; give one of them.")
+    contents = Contents.of(SHORT if short else section_words or ())
     refuse_overwriting(file_name, files)
 
     # the machines, with the keys of their files
@@ -47,16 +55,16 @@ def write_page(
 
     with ProgressLine("report") as progress:
         if len(cases) == 2:
-            document = side_by_side(cases, keys, system, progress)
+            document = side_by_side(cases, keys, system, progress, contents)
         else:
             machine = cases[0].machine
             load_cases = cases_of(machine) if machine.cases and not case_name else []
-            document = whole_report(cases[0], keys[0], system, step, progress, load_cases)
+            document = whole_report(cases[0], keys[0], system, step, progress, load_cases, contents)
     document = document._replace(title=title or document.title)
 
     # SOURCE_DATE_EPOCH decides the date where a page must come out the same every time
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
     date = time.gmtime(float(epoch)) if epoch.isdecimal() else time.localtime()
     look = Look("html", comma=comma, digits=digits)
-    page = report_page(document, look, time.strftime("%Y-%m-%d", date))
+    page = report_page(document, look, paper or A4, time.strftime("%Y-%m-%d", date))
     write_out(page, file_name, "utf-8")

@@ -34,8 +34,8 @@ _SUFFIXES = {
     ".csv": "csv",
     ".json": "json",
     ".jsonl": "json",
+    ".xlsx": "xlsx",
     ".md": "markdown",
-    ".parquet": "parquet",
 }
 _LINES = ("csv", "json")
 """Formats that can go on where they end."""
@@ -71,8 +71,7 @@ def run_sweep(
     """Compute and write the rows: the options of the command. Raises UsageError for those that do not go together."""
     written = format_of(format, file_name, _SUFFIXES, comma)
     is_file = file_name not in (None, "-")
-    is_for_people = written in ("table", "markdown")
-    is_parquet = written == "parquet"
+    is_for_people = written in ("table", "markdown", "xlsx")
     is_in_order = not (sort or pareto or summarised)
     can_resume = is_file and written in _LINES and is_in_order
     refuse_contradictions(
@@ -83,11 +82,7 @@ def run_sweep(
             resume and not can_resume,
             "--resume goes on in csv or json lines, rows in order; give --output FILE.csv.",
         ),
-        (is_parquet and not is_file, "Parquet is a file; give --output FILE.parquet."),
-        (
-            summarised and (shard or is_parquet),
-            "--summary is of all rows, as text; no --shard, no parquet.",
-        ),
+        (summarised and shard, "--summary is of all rows; no --shard."),
         (dask and jobs, "give only one of --dask and --jobs."),
     )
     refuse_overwriting(file_name, (file,))
@@ -116,7 +111,7 @@ def run_sweep(
     if not is_for_people:
         columns_shown = [(head.id, index) for index, head in enumerate(sweep.heads)]
     names = tuple((name, sweep.heads[index].unit) for name, index in columns_shown)
-    titles = Titles(names, sweep.texts, types=sweep.types() if is_parquet else ())
+    titles = Titles(names, sweep.texts)
     if summarised:
         titles = Titles(summary_heads(sweep.heads), row="column")
     look = Look(written, comma=comma, digits=digits)

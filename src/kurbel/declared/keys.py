@@ -63,18 +63,24 @@ class Key(NamedTuple):
         text = f"{self.text} ({self.symbol})" if self.symbol else self.text
         if self.usual:
             text = f"{text}; usual: {self.usual}"
-        return f"{text}; absent: {self.absent}" if self.absent else text
+        if not self.absent:
+            return text
+        return f"{text}; absent: {self.absent}"
 
     @property
     def written(self) -> str:
         """How its value is written: as the form says, with the example of the key."""
         written = self.form.written
-        return written.replace(self.form.example, self.example) if self.example else written
+        if not self.example:
+            return written
+        return written.replace(self.form.example, self.example)
 
     def line(self, name: str) -> str:
         """Return a line of a file that gives it, such as `bore: 450 mm`; '' if it takes more than one line."""
         sample = self.example or self.form.example
-        return "" if sample == "…" else f"{name}: {sample}"
+        if sample == "…":
+            return ""
+        return f"{name}: {sample}"
 
     def write(self, name: str) -> str:
         """Return what to write where it is missing."""
@@ -118,7 +124,9 @@ class Rule(NamedTuple):
     @property
     def path(self) -> Path:
         """The place as a path."""
-        return self.place if isinstance(self.place, tuple) else (self.place,)
+        if isinstance(self.place, tuple):
+            return self.place
+        return (self.place,)
 
     def below(self, *path: Step) -> "Rule":
         """Return the rule with its place relative to an outer record."""
@@ -139,7 +147,9 @@ class Rule(NamedTuple):
                 return brace[0]
             if isinstance(value, str):
                 return value
-            return show(value, kind) if kind else f"{value:g}"
+            if kind:
+                return show(value, kind)
+            return f"{value:g}"
 
         message = re.sub(r"\{(\w+)(?::(\w+))?\}", fill, self.sentence)
         return Fault(self.path, message, self.at_key)

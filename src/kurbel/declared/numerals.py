@@ -30,7 +30,9 @@ _ALIKE: dict[int, int | str] = {
 
 def familiar(text: str) -> str:
     """Return a text with look-alikes as a keyboard has them."""
-    return text if text.isascii() else text.translate(_ALIKE)
+    if text.isascii():
+        return text
+    return text.translate(_ALIKE)
 
 
 def keyboard_text(text: str) -> str:
@@ -99,4 +101,6 @@ def _hint(text: str) -> str:
     if number is None or re.match("0[box]", text):
         return ""
     has_unit = re.match(r"\s*[A-Za-z°]", text[number.end() :])
-    return f"; it has no unit, write {number.group()}" if has_unit else ""
+    if not has_unit:
+        return ""
+    return f"; it has no unit, write {number.group()}"

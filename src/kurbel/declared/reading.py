@@ -90,7 +90,9 @@ class Reading:
             if there[: len(here)] == here:
                 below[words] = None
         listed = list(near or below)[:3]
-        return "it belongs " + " or ".join(listed) if listed else ""
+        if not listed:
+            return ""
+        return "it belongs " + " or ".join(listed)
 
     def note(self, fault: Fault) -> Reported:
         """Keep a fault and return REFUSED, which replaces the value that could not be read.
@@ -141,7 +143,9 @@ def text_in_one_line(text: str, most: int = 60) -> str:
             line += " "
         else:
             line += f"\\u{ord(character):04x}"
-    return line if len(line) <= most else line[: most - 3] + "…"
+    if len(line) <= most:
+        return line
+    return line[: most - 3] + "…"
 
 
 def node_kind(value: Node) -> str:

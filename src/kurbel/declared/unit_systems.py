@@ -26,7 +26,7 @@ _TAKEN_FROM = {
 }
 """Larger unit -> base value from which it is used, if that is not 1 of the unit itself."""
 
-_OF_MESSAGES: ContextVar[str] = ContextVar("system of messages", default="metric")
+_OF_MESSAGES: ContextVar[str] = ContextVar("system of messages", default="")
 
 
 @contextmanager
@@ -37,6 +37,11 @@ def messages_in(system: str) -> Iterator[None]:
         yield
     finally:
         _OF_MESSAGES.reset(before)
+
+
+def requested_system() -> str:
+    """Return the unit system that was requested for messages, '' for none: then they are metric."""
+    return _OF_MESSAGES.get()
 
 
 def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
@@ -67,15 +72,21 @@ def units_of(sized: Sequence[tuple[str, str, float]], system: str) -> list[str]:
     return [shown_unit(kind, system, largest[kind, family]) for kind, family, _ in sized]
 
 
-def convert(value: Any, kind: str, unit: str) -> Any:
-    """Return base values, a number or an array, in a unit of their kind."""
+def convert(value: Any, kind: str, unit: str, is_difference: bool = False) -> Any:
+    """Return base values, a number or an array, in a unit of their kind; of differences 1 K is 1.8 °F.
+
+    >>> round(convert(300.0, "temperature", "°F"), 9), round(convert(1.0, "temperature", "°F", is_difference=True), 9)
+    (80.33, 1.8)
+    """
     if not unit:
         return value
     multiplier, divisor = unit_factor(unit, kind)
     if multiplier != divisor:
         value = value / multiplier * divisor
-    zero = zero_of(unit)
-    return value - zero if zero else value
+    zero = 0.0 if is_difference else zero_of(unit)
+    if not zero:
+        return value
+    return value - zero
 
 
 def show(value: float, kind: str, figures: int = 6) -> str:
@@ -84,6 +95,26 @@ def show(value: float, kind: str, figures: int = 6) -> str:
     >>> show(0.3, "length"), show(5e5, "pressure"), show(225.819, "torque", figures=2)
     ('300 mm', '5 bar', '230 N m')
     """
-    unit = shown_unit(kind, _OF_MESSAGES.get(), value)
-    rounded = float(f"{convert(value, kind, unit):.{figures}g}")
-    return f"{rounded:.6g} {unit}".rstrip()
+    unit = shown_unit(kind, _OF_MESSAGES.get() or "metric", value)
+    return f"{rounded_text(convert(value, kind, unit), figures)} {unit}".rstrip()
+
+
+def rounded_text(number: float, figures: int) -> str:
+    """Write a number for a message with so many figures, and without a power of ten where people write none.
+
+    >>> rounded_text(1407.7, 3), rounded_text(0.3, 6)
+    ('1410', '0.3')
+    """
+    rounded = float(f"{number:.{figures}g}")
+    return f"{rounded:.6g}"
+
+
+def show_range(low: float, high: float, kind: str, figures: int = 3) -> str:
+    """Write a range of base values for a message, as `show` does.
+
+    >>> show_range(50.0, 60.0, "velocity")
+    '50 to 60 m/s'
+    """
+    unit = shown_unit(kind, _OF_MESSAGES.get() or "metric", high)
+    first, last = (rounded_text(convert(value, kind, unit), figures) for value in (low, high))
+    return f"{first} to {last} {unit}".rstrip()

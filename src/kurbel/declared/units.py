@@ -140,6 +140,16 @@ KINDS = {
         imperial="lbf ft/rad",
         written="2000 kN m/rad",
     ),
+    "spring_rate": Kind(
+        1e-12,
+        1e18,
+        f"{_FORCES} / m, cm, mm, in, ft; lb/in, lb/ft",
+        "N/m",
+        "N/mm",
+        "kgf/mm",
+        "lbf/in",
+        written="50 N/mm",
+    ),
     "damping": Kind(
         1e-15,
         1e18,
@@ -149,7 +159,14 @@ KINDS = {
         written="500 N m s/rad",
     ),
     "volume": Kind(
-        1e-27, 1e27, "m3, dm3, l, cm3, mm3, in3", "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "60 dm3"
+        1e-27,
+        1e27,
+        "m3, dm3, l, cm3, mm3, in3, ft3, US gal, imp gal, bbl",
+        "m^3",
+        ("cm^3", "m^3"),
+        "dm^3",
+        "in^3",
+        "60 dm3",
     ),
     "volume_rise": Kind(
         0, 1e27, "m3, cm3, in3 / deg, rad", "m^3/deg", "cm^3/deg", "cm^3/deg", "in^3/deg"
@@ -164,6 +181,15 @@ KINDS = {
         "psi/deg",
         "10 bar/deg",
     ),
+    "energy_rise": Kind(
+        0,
+        1e18,
+        "J, kJ, kgf m, lbf ft / deg, rad",
+        "J/deg",
+        ("J/deg", "kJ/deg"),
+        "kgf m/deg",
+        "lbf ft/deg",
+    ),
     "pressure_velocity": Kind(
         0,
         1e18,
@@ -174,13 +200,18 @@ KINDS = {
         "psi ft/s",
     ),
     "density": Kind(
-        1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3", written="1000 kg/m3"
+        1e-9,
+        1e9,
+        "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3",
+        "kg/m^3",
+        imperial="lb/ft^3",
+        written="1000 kg/m3",
     ),
-    "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", written="20 °C"),
+    "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", imperial="°F", written="20 °C"),
     "flow": Kind(
         0,
         1e18,
-        "m3, dm3, l, cm3, ft3, in3 / s, min, h",
+        "m3, dm3, l, cm3, ft3, in3 / s, min, h; US gal, imp gal, bbl / s, min, h, d; US gpm, imp gpm, cfm",
         "m^3/s",
         ("l/min", "m^3/h"),
         "m^3/h",
@@ -191,6 +222,17 @@ KINDS = {
         1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"
     ),
     "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K", written="287 J/kg K"),
+    "fuel": Kind(1e-15, 1e6, f"mg, {_MASSES}", "kg", ("mg", "g", "kg"), "g", "lb", "35 mg"),
+    "heating_value": Kind(
+        0,
+        1e12,
+        "J/kg, kJ/kg, MJ/kg, kcal/kg, Btu/lb",
+        "J/kg",
+        "MJ/kg",
+        "kcal/kg",
+        "Btu/lb",
+        "42.7 MJ/kg",
+    ),
     "viscosity": Kind(
         1e-6,
         1e3,
@@ -251,6 +293,9 @@ _FACTORS: dict[str, UnitFactor] = {
     "in": (254, 1e4),
     "ft": (3048, 1e4),
     "l": (1, 1e3),
+    "US_gal": (3785411784, 1e12),
+    "imp_gal": (454609, 1e8),
+    "bbl": (158987294928, 1e12),
     "kg": (1, 1),
     "g": (1, 1e3),
     "t": (1e3, 1),
@@ -261,11 +306,16 @@ _FACTORS: dict[str, UnitFactor] = {
     "s": (1, 1),
     "min": (60, 1),
     "h": (3600, 1),
+    "d": (86400, 1),
     "Hz": (1, 1),
     # temperature in K, see `_ZEROS`
     "K": (1, 1),
     "°C": (1, 1),
     "°F": (5, 9),
+    # flow in m³/s
+    "US_gpm": (3785411784, 60e12),
+    "imp_gpm": (454609, 60e8),
+    "cfm": (3048**3, 60e12),
     "mol": (1, 1),
     "kmol": (1e3, 1),
     # angle and revolutions, but for those of `_ELSEWHERE`
@@ -295,6 +345,8 @@ _FACTORS: dict[str, UnitFactor] = {
     # torque in N m, energy in J, power in W
     "Nm": (1, 1),
     "J": (1, 1),
+    "kcal": (4186.8, 1),
+    "Btu": (4186.8 * _POUND * 5, 9),
     "W": (1, 1),
     "PS": (75 * GRAVITY, 1),
     # viscosity in Pa s
@@ -325,9 +377,9 @@ _ZEROS = {"°C": 273.15, "°F": 459.67}
 _DEGREES: dict[str, UnitFactor] = {"rad": (180, math.pi)}
 _POUND_OF_FORCE: dict[str, UnitFactor] = {"lb": (_LBF, 1)}
 _ELSEWHERE: dict[str, dict[str, UnitFactor]] = {
-    **dict.fromkeys(("angle", "volume_rise"), _DEGREES),
+    **dict.fromkeys(("angle", "volume_rise", "energy_rise"), _DEGREES),
     # only a force gives a pressure or a torque: there the pound of everyday English can mean nothing else
-    **dict.fromkeys(("pressure", "stress", "torque", "spring"), _POUND_OF_FORCE),
+    **dict.fromkeys(("pressure", "stress", "torque", "spring", "spring_rate"), _POUND_OF_FORCE),
     "pressure_rise": {**_DEGREES, **_POUND_OF_FORCE},
     "speed": {"rad": (1, 2 * math.pi)},
     "stiffness": {"deg": (math.pi, 180)},
@@ -341,10 +393,58 @@ ZEROED_UNITS = {
     "psig": ("gauge", "psi"),
     "bara": ("absolute", "bar"),
     "barg": ("gauge", "bar"),
+    "mbara": ("absolute", "mbar"),
+    "mbarg": ("gauge", "mbar"),
+    "kPaa": ("absolute", "kPa"),
+    "kPag": ("gauge", "kPa"),
+    "MPaa": ("absolute", "MPa"),
+    "MPag": ("gauge", "MPa"),
     "ata": ("absolute", "at"),
     "atü": ("gauge", "at"),
+    "atu": ("gauge", "at"),
 }
-"""Pressure units that name what they count from, and the unit without; machine files have them."""
+"""Pressure units that name what they count from, and the unit without. So do `bar abs`, `bar(g)`, of every unit."""
+_ZEROS_BY_ENDING = {
+    "abs": "absolute",
+    "absolute": "absolute",
+    "(a)": "absolute",
+    "(abs)": "absolute",
+    "gauge": "gauge",
+    "(g)": "gauge",
+}
+
+
+def zero_and_unit(unit: str) -> tuple[str, str]:
+    """Return the zero that a unit of pressure names, 'absolute' or 'gauge', '' for none, and the unit without it.
+
+    >>> zero_and_unit("psia"), zero_and_unit("bar abs"), zero_and_unit("kPa (g)"), zero_and_unit("at")
+    (('absolute', 'psi'), ('absolute', 'bar'), ('gauge', 'kPa'), ('', 'at'))
+    """
+    name = keyboard_text(unit)
+    if name in ZEROED_UNITS:
+        return ZEROED_UNITS[name]
+    for ending, zero in _ZEROS_BY_ENDING.items():
+        plain = name.removesuffix(ending).rstrip()
+        is_apart = ending.startswith("(") or name.endswith(f" {ending}")
+        if plain and plain != name and is_apart:
+            return zero, plain
+    return "", name
+
+
+def other_zero(unit: str, zero: str, what: str) -> str:
+    """Return the message if a unit of pressure names another zero than `what` has, '' if it does not.
+
+    zero: `absolute`, `gauge`, or '' of a difference of pressures.
+
+    >>> other_zero("7 bara".split()[1], "gauge", "p_max")
+    "'bara' is absolute, but p_max is gauge here; write the gauge pressure in bar"
+    """
+    named, plain = zero_and_unit(unit)
+    if named in ("", zero):
+        return ""
+    if not zero:
+        return f"'{unit}' is {named}, but {what} has no zero; write the unit {plain}"
+    return f"'{unit}' is {named}, but {what} is {zero} here; write the {zero} pressure in {plain}"
 
 
 @cache
@@ -362,6 +462,10 @@ def _names_of(kind: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
+_WORDS_OF_NAME = re.compile("(long|short|US|imp) ")
+"""First words of units of two words; in `_FACTORS` they are joined by `_`."""
+
+
 def _factor(unit: str, kind: str) -> UnitFactor:
     """Return multiplier and divisor of a product of single units, such as `kgf m/s/cm2`."""
     if kind == "spring":  # height over pressure, which may be a quotient itself
@@ -371,7 +475,7 @@ def _factor(unit: str, kind: str) -> UnitFactor:
         return multiplier * pressure_divisor, divisor * pressure_multiplier
     multiplier = 1.0
     divisor = 1.0
-    for slash, text in re.findall(r"(/?)([^ /]+)", re.sub("(long|short) ", r"\1_", unit)):
+    for slash, text in re.findall(r"(/?)([^ /]+)", _WORDS_OF_NAME.sub(r"\1_", unit)):
         base, digits = re.findall(r"^(.*?\D|1)(-?\d)?$", text)[0]
         factor = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS.get(base)
         if factor is None:
@@ -402,7 +506,14 @@ _SAME_SIGNS = (
 """Signs of units, and how they are written here."""
 
 
-def _normal(unit: str) -> str:
+_MARKS = {
+    **dict.fromkeys(("'", "′", "’"), "ft"),
+    **dict.fromkeys(("''", '"', "″", "”", "′′", "’’"), "in"),
+}
+"""How feet and inches are marked on drawings."""
+
+
+def normal_unit(unit: str) -> str:
     """Write `kg·m²`, `kg*m^2` and `kg  m2` alike."""
     unit = keyboard_text(unit)
     for sign, same in _SAME_SIGNS:
@@ -412,6 +523,7 @@ def _normal(unit: str) -> str:
     unit = re.sub(r" (?=(H2O|Hg)\b)", "", unit)
     unit = re.sub(r"\b(foot|feet)\b", "ft", unit)
     unit = re.sub(r"\binch(es)?\b", "in", unit)
+    unit = _MARKS.get(unit, unit)
     return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))
 
 
@@ -422,11 +534,14 @@ def unit_factor(unit: str, kind: str) -> UnitFactor:
     Raises UnitError with the known units and, where the unit is one of another kind, that kind.
     """
     names = _names_of(kind)
-    name = _normal(unit)
+    name = normal_unit(unit)
+    if kind == "pressure":
+        _, name = zero_and_unit(name)
     if name in names:
         return _factor(name, kind)
-    listed = ", ".join(names[:8])
-    if len(names) > 8:
+    usual = listed_units(kind)
+    listed = ", ".join(usual[:8])
+    if len(usual) > 8:
         listed += ", …"
     hint = unit_hint(name, kind)
     raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {listed}){hint}")
@@ -443,20 +558,38 @@ def kind_name(kind: str) -> str:
     return special.get(kind, kind.replace("_", " "))
 
 
-_INCHES = r"([-+]?)(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})(?=\s*[A-Za-z]|$)"
+_FRACTION = r"(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})"
+_INCHES = rf"([-+]?){_FRACTION}(?=\s*[A-Za-z\"'″′”’]|$)"
 """A number as drawings in inches have it: 2 1/4, 2-1/4, 3/8."""
+FEET_AND_INCHES = (
+    r"([-+]?)([0-9]{1,6}) ?(?:ft|feet|foot|['′’])[ -]{0,3}"
+    rf"(?:{_FRACTION}|([0-9]{{1,4}}(?:\.[0-9]*)?)) ?(?:in|inch|inches|''|[\"″”])"
+)
+"""Feet and inches: 5 ft 6 in, 5' 6", 5'-6 1/2"."""
+_FEET_AND_INCHES = re.compile(FEET_AND_INCHES)
 _QUOTIENT = rf"{NUMBER.pattern}\s*/\s*{NUMBER.pattern}(?=\s*[A-Za-z°]|$)"
 
 
-def _split(text: str) -> tuple[float, str] | None:
-    """Return number and unit of a value in plain signs, None where it begins with no number."""
+def split_quantity(text: str) -> tuple[float, str] | None:
+    """Return number and unit of a value in plain signs, None where it begins with no number.
+
+    >>> split_quantity("5.4 at"), split_quantity("2 1/4 in"), split_quantity("12 ft 6 in"), split_quantity("1/80")
+    ((5.4, 'at'), (2.25, 'in'), (150.0, 'in'), (0.0125, ''))
+    """
+    feet_and_inches = _FEET_AND_INCHES.fullmatch(text)
+    if feet_and_inches:
+        sign, feet, inch, numerator, denominator, inches = feet_and_inches.groups()
+        value = 12 * int(feet) + float(inches or inch or 0)
+        if numerator:
+            value += int(numerator) / int(denominator)
+        return float(f"{sign}1") * value, "in"
     if "/" in text:
-        inches = re.match(_INCHES, text)
-        if inches:
-            sign, inch, numerator, denominator = inches.groups()
+        fraction = re.match(_INCHES, text)
+        if fraction:
+            sign, inch, numerator, denominator = fraction.groups()
             parts = int(inch or 0) * int(denominator) + int(numerator)
             value = float(f"{sign}1") * parts / int(denominator)
-            return value, text[inches.end() :].strip()
+            return value, text[fraction.end() :].strip()
         quotient = re.match(_QUOTIENT, text)
         if quotient:
             return parse_ratio(quotient.group()), text[quotient.end() :].strip()
@@ -466,18 +599,22 @@ def _split(text: str) -> tuple[float, str] | None:
     return float(number.group()), text[number.end() :].strip()
 
 
-def parse_quantity(text: str, kind: str) -> float:
+def parse_quantity(text: str, kind: str, is_difference: bool = False) -> float:
     """Return the value of `text`, a number with a unit, in the base of `kind`; a ratio has none.
+
+    is_difference: it is one of two values, so that its unit counts from its own zero.
 
     >>> parse_quantity("450 mm", "length"), parse_quantity("1/80", "ratio")
     (0.45, 0.0125)
+    >>> parse_quantity("2 °C", "temperature"), parse_quantity("2 °C", "temperature", is_difference=True)
+    (275.15, 2.0)
 
     Raises UnitError when there is no number, no unit, or a unit of another kind.
     """
     if kind == "ratio":
         return parse_ratio(text)
     stripped = keyboard_text(text)
-    number_and_unit = _split(stripped)
+    number_and_unit = split_quantity(stripped)
     expected = f"expected a number with its unit, such as '{kind_example(kind)}'"
     if number_and_unit is None:
         raise UnitError(f"{expected}, got '{text}'")
@@ -498,7 +635,8 @@ def parse_quantity(text: str, kind: str) -> float:
         raise UnitError(f"{expected}, got '{stripped}'")
     # its value in the base
     multiplier, divisor = unit_factor(unit, kind)
-    in_base = (value + zero_of(unit)) * multiplier / divisor
+    zero = 0.0 if is_difference else zero_of(unit)
+    in_base = (value + zero) * multiplier / divisor
     if not math.isfinite(in_base):
         raise UnitError(f"{stripped} is too large to compute with")
     return in_base
@@ -508,7 +646,19 @@ def zero_of(unit: str) -> float:
     """Return how far below its 0 a unit has the 0 of its base, in that unit: 273.15 of °C, 0 of most."""
     if unit[-1:] not in "CF":
         return 0.0
-    return _ZEROS.get(_normal(unit), 0.0)
+    return _ZEROS.get(normal_unit(unit), 0.0)
+
+
+def step_unit(unit: str) -> str:
+    """Return the unit in which differences of values in a unit are written, itself of most.
+
+    >>> step_unit("bara"), step_unit("°C"), step_unit("mm")
+    ('bar', 'K', 'mm')
+    """
+    zero, plain = zero_and_unit(unit)
+    if zero:
+        return plain
+    return "K" if normal_unit(unit) == "°C" else unit
 
 
 _FITTING = {
@@ -535,13 +685,13 @@ def written_unit(text: str) -> str:
     >>> written_unit("5.4 at"), written_unit("2 1/4 in"), written_unit("2 %"), written_unit("1/200")
     ('at', 'in', '%', '')
     """
-    _, unit = _split(keyboard_text(text)) or (0.0, "")
+    _, unit = split_quantity(keyboard_text(text)) or (0.0, "")
     return "" if re.match(r"/\s*[0-9.]", unit) else unit
 
 
 def kind_example(kind: str) -> str:
     """Return a value of this kind as a person would write it, for messages and for the schema."""
-    return KINDS[kind].written or f"10 {_normal(KINDS[kind].si)}"
+    return KINDS[kind].written or f"10 {normal_unit(KINDS[kind].si)}"
 
 
 def unit_example(kind: str) -> str:
@@ -557,19 +707,38 @@ def kinds() -> tuple[str, ...]:
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
     names = _names_of(kind)
-    return (*names, *ZEROED_UNITS) if kind == "pressure" else names
+    if kind != "pressure":
+        return names
+    return (*names, *ZEROED_UNITS)
+
+
+_SELDOM = {
+    "um, km or dm in a product": r"(?=.*[ /]).*\b(um|km|dm)[23]?\b",
+    "inches with other units than pounds": r"(?=.*\b(in|ft)2?\b).*\b(k?Nm?|MN|kgf|kp|tf|m?g|kg|t)\b",
+    "pounds with metres": r"(?=.*\blbf?\b).*[ /](m|mm|cm)2?\b",
+    "large forces by small levers": r"MN [mc]m\b|MN/[mc]m2",
+    "slow speeds": r"(m|mm|cm|in|ft)/h",
+    "pressures of laboratories in a quotient": r".*\b(GPa|hPa|atm|Torr|.mHg|inHg|.mH2O|inH2O|mWS)/",
+    "springs of laboratories": r"(mm|cm|m|in)/(GPa|hPa|atm|Torr|.mHg|inHg|.mH2O|inH2O|mWS)",
+    "springs in metres, or of both systems": r"m/([kM]?Pa|m?bar|at|psi|lb/)|in/([kM]?Pa|m?bar|at)$|[mc]m/(psi|lb/)",
+}
+"""Units that are read but not listed, and why."""
+_SELDOM_UNIT = re.compile("|".join(f"(?:{pattern})" for pattern in _SELDOM.values()))
+_USUAL = ("kg/dm3", "dm3/s", "km/h", "km/s", "um/s")
 
 
 def listed_units(kind: str) -> tuple[str, ...]:
-    """Return the units of a kind that people write: products with micrometres, kilometres, decimetres are read, too."""
-    usual = ("kg/dm3", "km/h", "km/s", "um/s")
-    rare = re.compile(r"(?=.*[ /]).*\b(um|km|dm)[23]?\b")
-    return tuple(name for name in unit_names(kind) if name in usual or not rare.match(name))
+    """Return the units of a kind that people write: products such as kN/in2 are read, too."""
+    listed = []
+    for name in unit_names(kind):
+        if name in _USUAL or not _SELDOM_UNIT.match(name):
+            listed.append(name)
+    return tuple(listed)
 
 
 _SPOKEN = (
-    (r"''|[\"″”]", "in"),
-    (r"['′’]", "ft"),
+    (r"\b(cu|cubic) ?(ft|in)\b", r"\g<2>3"),
+    (r"\b(barrels?|bbls)\b", "bbl"),
     (r"\bpounds?\b", "lb"),
     (r"\b(lbf?|kg|in|ft|mm|cm)s\b", r"\1"),
 )
@@ -582,7 +751,7 @@ _KINEMATIC = ("mm2/s", "cm2/s", "m2/s", "cSt", "St", "ft2/s", "in2/s")
 def unit_hint(name: str, kind: str) -> str:
     """Return what to write instead of a unit, of which the white space is that of ours; '' where nothing is known."""
     if kind == "length" and re.fullmatch(r"(ft|['′’])[ -]*[0-9].*", name):
-        return "; write feet and inches in one unit, such as '90 in' for 7 ft 6 in"
+        return "; write feet and inches as '7 ft 6 in', or in one unit: '90 in'"
     if kind == "viscosity" and name in _KINEMATIC:
         return (
             f"; {name} is a unit of kinematic viscosity; times the density it is the dynamic one: "
@@ -593,8 +762,14 @@ def unit_hint(name: str, kind: str) -> str:
     number = NUMBER.match(name)
     if number:
         return f"; write the unit alone, without {number.group()}"
-    if name in (*ZEROED_UNITS, "atu"):
-        return "; whether a pressure is gauge or absolute is set by the key 'pressures'"
+    gallons = re.fullmatch(r"(gal|gallons?|gpm)(/.*)?", name)
+    if gallons:
+        unit = gallons[1] if gallons[1] == "gpm" else "gal"
+        rest = gallons[2] or ""
+        return (
+            f"; a gallon is 'US gal' (3.785 l) or 'imp gal' (4.546 l): "
+            f"write 'US {unit}{rest}' or 'imp {unit}{rest}'"
+        )
     if name in ("ton", "tons", "tonf"):
         f = "f" if name == "tonf" else ""
         return (

@@ -80,7 +80,9 @@ class Answer(NamedTuple):
     @property
     def kind(self) -> str:
         """The kind of the quantity, which decides the unit."""
-        return "angle" if self.angle else self.quantity.kind
+        if self.angle:
+            return "angle"
+        return self.quantity.kind
 
     @property
     def owner(self) -> str:
@@ -90,7 +92,9 @@ class Answer(NamedTuple):
         """
         if self.subject == _WHOLE:
             return MACHINE
-        return self.part if self.part and not self.part.startswith(self.subject) else self.subject
+        if self.part and not self.part.startswith(self.subject):
+            return self.part
+        return self.subject
 
 
 # which key values are requested
@@ -201,7 +205,7 @@ def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[in
         if not is_slow(batch.machine, requested):
             for start in range(0, len(batch.rows), most):
                 indices = np.arange(start, min(start + most, len(batch.rows)))
-                by_row |= _together(batch, indices, requested)
+                by_row |= _values_of_batch(batch, indices, requested)
         for index, row in enumerate(batch.rows):
             if row not in by_row:
                 by_row[row] = answered_alone(batch.single(index), requested)
@@ -228,7 +232,7 @@ def _is_long(chamber: Chamber) -> bool:
     return sum(len(line.fractions) for line in chamber.lines) > _MOST_POINTS
 
 
-def _together(
+def _values_of_batch(
     batch: Batch, indices: Indices, requested: Sequence[Answer]
 ) -> dict[int, DesignValues]:
     """Return the key values of a batch by its rows, without machines that fail or have a value that is not finite."""
@@ -239,8 +243,8 @@ def _together(
         columns, other_parts = _values(Case(machine, len(indices)), requested)
     except (KurbelError, ArithmeticError, RuntimeWarning):
         half = len(indices) // 2
-        first = _together(batch, indices[:half], requested)
-        return first | _together(batch, indices[half:], requested)
+        first = _values_of_batch(batch, indices[:half], requested)
+        return first | _values_of_batch(batch, indices[half:], requested)
 
     # whether a crosshead locks itself is known of a single machine only
     is_good = np.ones(len(indices), dtype=bool)
@@ -320,7 +324,9 @@ def _other_parts(subjects: Mapping[tuple[str, str], Subject], requested: Sequenc
         texts.append(f"no {_quoted(missing)}")
     if others:
         texts.append(f"but {_quoted(others)}")
-    return f"it has other parts: {', '.join(texts)}" if texts else ""
+    if not texts:
+        return ""
+    return f"it has other parts: {', '.join(texts)}"
 
 
 def _quoted(names: Iterable[str]) -> str:
@@ -337,7 +343,8 @@ Cell = Union[DesignValue, str]
 class Head(NamedTuple):
     """A column of a table of designs: its id, and the unit of its values, '' for none.
 
-    kind: of the values, '' of texts; input: whether it is a key that varies; listed: each value is a list.
+    kind: of the values, '' of texts; input: whether it is a key that varies; listed: each value is a list. zero: what
+    pressures count from, see `Quantity.zero`.
     """
 
     id: str
@@ -345,6 +352,7 @@ class Head(NamedTuple):
     kind: str = ""
     input: bool = False
     listed: bool = False
+    zero: str = ""
 
 
 class Design(NamedTuple):
@@ -414,7 +422,9 @@ class Study:
     def first(self) -> Sequence[DesignValue]:
         """The key values of the first valid machine."""
         answered = answered_alone(self.binder.machine, self.answers)
-        return [None] * len(self.answers) if isinstance(answered, str) else answered.values
+        if isinstance(answered, str):
+            return [None] * len(self.answers)
+        return answered.values
 
     def heads(self, system: str) -> list[Head]:
         """Return the heads of the key values in a system of units, which the values of the first machine decide.
@@ -435,7 +445,8 @@ class Study:
             id = f"{quantity.id}_at" if answer.angle else quantity.id
             if answer.alone or ids.count(quantity.id) > 1:
                 id = f"{answer.owner}.{id}"
-            heads.append(Head(id, unit, answer.kind, listed=quantity.listed))
+            head = Head(id, unit, answer.kind, listed=quantity.listed, zero=quantity.zero)
+            heads.append(head)
         return heads
 
     def of(self, columns: Sequence[KeyColumn]) -> list[DesignResult]:

@@ -20,15 +20,22 @@ from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import Reading, StopReading
 from kurbel.declared.unit_systems import SI
-from kurbel.declared.units import parse_quantity, unit_factor, zero_of
+from kurbel.declared.units import (
+    parse_quantity,
+    unit_factor,
+    written_unit,
+    zero_and_unit,
+    zero_of,
+)
 from kurbel.designs.plan import Input
 from kurbel.errors import KurbelError, MachineFileError, Path, UnitError, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
 from kurbel.machine.cylinder import pin_lag
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.overrides import path_of, value_at
+from kurbel.machine_file.overrides import path_of, tree_of, value_at
 from kurbel.machine_file.reader import read_values, reading_of
+from kurbel.machine_file.zeros import zero_of_key
 
 INFINITE = "infinite"
 """The word for the length of an infinite rod."""
@@ -98,13 +105,17 @@ class Binder:
             self._is_numeric.append(is_number and not _is_indivisible(owner, mappings))
         self._words = self._structure(start)
         self._root = root
+        self.zeros = list(map(self._zero, keys, self.kinds))
+        """What the pressures of each key count from: `absolute`, `gauge`, '' of other quantities and of differences."""
+        self.units = list(map(_si_unit, self.kinds, start))
+        """The unit of SI of each key, which names the zero of a pressure where its text does."""
 
     def columns(self, numbers: Array) -> list[KeyColumn]:
         """Return columns of numbers (rows, keys) in the base of the kinds of all keys."""
         rows = np.arange(len(numbers))
         columns = []
-        for key, kind, values in zip(self._keys, self.kinds, numbers.T):
-            input = Input(key, (), tuple(values.tolist()), SI[kind])
+        for key, unit, values in zip(self._keys, self.units, numbers.T):
+            input = Input(key, (), tuple(values.tolist()), unit)
             columns.append(KeyColumn(input, values, rows))
         return columns
 
@@ -123,7 +134,7 @@ class Binder:
         for group in _groups_alike(words, rows):
             rows_alone = group
             if len(group) > 1:
-                together, rows_alone = self._together(columns, group)
+                together, rows_alone = self._bound_together(columns, group)
                 batches += together
             for row in rows_alone.tolist():
                 machine = self._alone([column.text(row) for column in columns])
@@ -132,6 +143,12 @@ class Binder:
                 else:
                     batches.append(Batch(machine, [row]))
         return batches, failures
+
+    def _zero(self, key: str, kind: str) -> str:
+        """Return what the pressures of a key count from, '' if it has others."""
+        if kind != "pressure":
+            return ""
+        return zero_of_key(tree_of(self._with(self._start)), path_of(key))
 
     def _with(self, texts: Sequence[str]) -> Origin:
         """Return the file with these texts under the keys."""
@@ -163,7 +180,9 @@ class Binder:
             words.append(start if is_numeric else text)
         return words
 
-    def _together(self, columns: Sequence[KeyColumn], rows: Indices) -> tuple[list[Batch], Indices]:
+    def _bound_together(
+        self, columns: Sequence[KeyColumn], rows: Indices
+    ) -> tuple[list[Batch], Indices]:
         """Return the machines of rows with the same words, and the rows that must be read one by one."""
         try:
             self._read_structure(columns, rows[0])
@@ -238,6 +257,19 @@ class Binder:
             else:
                 mapping.values[name] = within_bounds
         return are_within
+
+
+def _si_unit(kind: str, text: str) -> str:
+    """Return the unit of SI of a kind, with the zero that a text names.
+
+    >>> _si_unit("length", "400 mm"), _si_unit("pressure", "7 bara"), _si_unit("", "mirrored")
+    ('m', 'Pa abs', '')
+    """
+    unit = SI.get(kind, "")
+    if kind != "pressure":
+        return unit
+    zero, _ = zero_and_unit(written_unit(text))
+    return f"{unit} {zero.replace('absolute', 'abs')}".rstrip()
 
 
 def numbers_of(input: Input, kind: str) -> Array:

@@ -12,7 +12,7 @@ from kurbel.arrays import Array, Flags, Indices
 from kurbel.declared.numerals import keyboard_text
 from kurbel.declared.reading import text_in_one_line
 from kurbel.declared.unit_systems import convert
-from kurbel.declared.units import parse_quantity
+from kurbel.declared.units import other_zero, parse_quantity, written_unit
 from kurbel.designs.answers import Cell, Design, Head
 from kurbel.designs.binding import INFINITE
 from kurbel.errors import UnitError, UsageError
@@ -80,6 +80,9 @@ def read_condition(text: str, heads: Sequence[Head], option: str = "--where") ->
         value = math.inf if is_infinite else parse_quantity(written, head.kind)
     except UnitError as error:
         raise UsageError(f"{where}: {error}") from None
+    wrong_zero = head.kind == "pressure" and other_zero(written_unit(written), head.zero, name)
+    if wrong_zero:
+        raise UsageError(f"{where}: {wrong_zero}")
     return RowCondition(number, relation, float(convert(value, head.kind, head.unit)))
 
 
@@ -239,7 +242,8 @@ def summary_heads(heads: Sequence[Head]) -> tuple[tuple[str, str], ...]:
 
 def column_summaries(rows: Iterable[Design], heads: Sequence[Head]) -> Iterator[Design]:
     """Yield a row for every column of numbers, over the rows that have a value there."""
-    columns = [_numbers_of(cells) for cells in zip(*(row.values for row in rows))]
+    values_by_row = [row.values for row in rows]
+    columns = [_numbers_of(cells) for cells in zip(*values_by_row)]
     inputs = [numbers for numbers, head in zip(columns, heads) if head.input]
     for numbers, head in zip(columns, heads):
         finite = numbers[np.isfinite(numbers)]

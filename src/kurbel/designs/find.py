@@ -165,9 +165,10 @@ class Solutions:
         self.varied = [_varied(span, kind) for span, kind in zip(spans, self.study.binder.kinds)]
 
         # the columns of a design: keys, then key values
-        key_heads = [
-            Head(varied.key, SI[varied.kind], varied.kind, input=True) for varied in self.varied
-        ]
+        key_heads = []
+        for varied, zero in zip(self.varied, self.study.binder.zeros):
+            head = Head(varied.key, SI[varied.kind], varied.kind, input=True, zero=zero)
+            key_heads.append(head)
         self.heads = tuple(self.study.heads("si"))
         heads = [*key_heads, *self.heads]
         self.wanted: list[Target] = []
@@ -186,6 +187,26 @@ class Solutions:
         self.found: list[Solution] = []
         self.jumps: list[Solution] = []
         self.excluded = 0
+
+    def __repr__(self) -> str:
+        count = len(self.found)
+        solutions = "1 solution" if count == 1 else f"{count} solutions"
+        keys = ", ".join(varied.key for varied in self.varied)
+        wanted = ", ".join(target.text for target in self.wanted)
+        return f"<kurbel find of {keys} for {wanted}: {solutions} in .found>"
+
+    def __str__(self) -> str:
+        """Return a line for each solution: the keys in the units of their ranges, and the key values."""
+        lines = []
+        for solution in self.found:
+            texts = []
+            for varied, value in zip(self.varied, solution.values):
+                texts.append(f"{varied.key} = {varied.written(value)}")
+            for head, value in zip(self.heads, solution.key_values):
+                texts.append(f"{head.id} = {show(value, head.kind)}")
+            line = ", ".join(texts)
+            lines.append("; ".join([line, *solution.notes]))
+        return "\n".join(lines) or repr(self)
 
     def at(self, shares: Array) -> list[_Design]:
         """Return the designs at shares (n, keys) of the ranges."""
@@ -224,10 +245,10 @@ class Solutions:
 
         if len(wanted_values) == 1:
             size = abs(float(wanted_values[0]))
-            places, jumps, ends = roots(lambda shares: differences(shares)[:, 0], size)
+            positions, jumps, ends = roots(lambda shares: differences(shares)[:, 0], size)
             if not self.depends(0):
                 return
-            shares = places[:, None]
+            shares = positions[:, None]
         else:
             shares = common_roots(differences)
             jumps = np.zeros(len(shares), dtype=bool)

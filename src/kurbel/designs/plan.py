@@ -14,10 +14,16 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.declared.numerals import NUMBER, keyboard_text
+from kurbel.declared.numerals import NUMBER, WRITTEN, keyboard_text
 from kurbel.declared.reading import LONGEST_VALUE, text_in_one_line
-from kurbel.declared.units import written_unit
-from kurbel.errors import UsageError
+from kurbel.declared.units import (
+    normal_unit,
+    split_quantity,
+    step_unit,
+    written_unit,
+    zero_and_unit,
+)
+from kurbel.errors import UnitError, UsageError
 from kurbel.machine_file.overrides import path_of
 
 MOST_ROWS = 10_000_000
@@ -119,7 +125,7 @@ def read_span(text: str) -> tuple[str, str, str, str]:
     expected = "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm"
     ends = values.split(":") if key else ()
     (low, high), unit = _numbers(text, ends, 2, expected)
-    return key, f"{low} {unit}".rstrip(), f"{high} {unit}".rstrip(), unit
+    return key, f"{low.text} {unit}".rstrip(), f"{high.text} {unit}".rstrip(), unit
 
 
 def _refused(text: str, why: str) -> UsageError:
@@ -136,34 +142,80 @@ def _list(text: str, parts: list[str]) -> tuple[str, ...]:
     if any(";" in part and NUMBER.match(part) for part in parts):
         raise _refused(text, "values are separated by commas; after ';' comes a further KEY=…")
     unit = written_unit(parts[-1])
-    return tuple(f"{part} {unit}" if unit and NUMBER.fullmatch(part) else part for part in parts)
+    texts = []
+    for part in parts:
+        is_bare_number = bool(unit) and bool(re.fullmatch(WRITTEN, part))
+        texts.append(f"{part} {unit}" if is_bare_number else part)
+    # rows are read together, and only the first one as it is in the file
+    zeros = {zero_and_unit(written_unit(part))[0] for part in texts}
+    if len(zeros) > 1:
+        units = " and ".join(dict.fromkeys(map(written_unit, texts)))
+        raise _refused(text, f"write these pressures from one zero, not in {units}")
+    return tuple(texts)
 
 
-def _numbers(text: str, parts: Sequence[str], count: int, expected: str) -> tuple[list[str], str]:
-    """Return so many numbers as they are written, and their unit; expected: what else is refused."""
-    units = [written_unit(part) for part in parts]
-    numbers = [part.strip().removesuffix(unit).strip() for part, unit in zip(parts, units)]
-    if len(numbers) != count or not all(map(NUMBER.fullmatch, numbers)):
+class _WrittenNumber(NamedTuple):
+    """A number before a unit: as a text, such as `2 1/4`, and its value."""
+
+    text: str
+    value: float
+
+
+def _written_number(part: str) -> tuple[_WrittenNumber, str] | None:
+    """Return the number and the unit of a text, None where it has no number.
+
+    >>> _written_number("2 1/4 in"), _written_number("1 ft 6 in")
+    ((_WrittenNumber(text='2 1/4', value=2.25), 'in'), (_WrittenNumber(text='18', value=18.0), 'in'))
+    """
+    try:
+        quantity = split_quantity(part)
+    except UnitError:
+        return None
+    if quantity is None or quantity[1] != written_unit(part):
+        return None
+    value, unit = quantity
+    text = part.removesuffix(unit).strip()
+    if not re.fullmatch(WRITTEN, text):  # feet and inches
+        text = f"{value:.15g}"
+    return _WrittenNumber(text, value), unit
+
+
+def _numbers(
+    text: str, parts: Sequence[str], count: int, expected: str, has_step: bool = False
+) -> tuple[list[_WrittenNumber], str]:
+    """Return so many numbers, and their unit; expected: what else is refused.
+
+    has_step: the last one is a difference, which may be in bar or K where others are in bara or °C.
+    """
+    written = list(map(_written_number, map(str.strip, parts)))
+    numbers = [number for number, _ in filter(None, written)]
+    units = [unit for _, unit in filter(None, written)]
+    if len(numbers) != count or None in written:
         raise _refused(text, expected)
-    different_units = sorted({*units} - {""})
+    first_unit = next(filter(None, units), "")
+    if has_step and units[-1] == step_unit(first_unit):
+        units[-1] = first_unit
+    different_units = {normal_unit(unit): unit for unit in reversed(units) if unit}
     if len(different_units) > 1:
-        in_units = " and ".join(different_units)
+        in_units = " and ".join(sorted(different_units.values()))
         raise _refused(text, f"write these numbers in one unit, not in {in_units}")
     for number in numbers:
-        if abs(float(number)) > _LARGEST:
-            raise _refused(text, f"{text_in_one_line(number)} is too large to compute with")
-    return numbers, "".join(different_units)
+        if abs(number.value) > _LARGEST:
+            raise _refused(text, f"{text_in_one_line(number.text)} is too large to compute with")
+    return numbers, first_unit
 
 
 def _range(text: str, written: str) -> tuple[tuple[float, ...], str]:
     """Return first, first + step, … as decimal fractions, exactly, as far as they do not pass the last; their unit."""
     expected = "a range has three numbers, first:last:step, such as 3:6:0.25"
-    numbers, unit = _numbers(text, written.split(":"), 3, expected)
-    first, last, step = (Fraction(repr(float(number))) for number in numbers)
+    numbers, unit = _numbers(text, written.split(":"), 3, expected, has_step=True)
+    first, last, step = (Fraction(repr(number.value)) for number in numbers)
     leads_away = not step or (last - first) / step < 0
     if leads_away:
         raise _refused(
-            text, f"a range from {numbers[0]} by steps of {numbers[2]} never reaches {numbers[1]}"
+            text,
+            f"a range from {numbers[0].text} by steps of {numbers[2].text} "
+            f"never reaches {numbers[1].text}",
         )
     steps = (last - first) / step
     if steps >= _MOST_VALUES:
@@ -178,20 +230,20 @@ def _range(text: str, written: str) -> tuple[tuple[float, ...], str]:
 
 def _distribution(text: str, name: str, inside: str) -> tuple[NormalDist | Uniform, str]:
     if name not in _DISTRIBUTIONS:
-        names = ", ".join(f"{known}({words})" for known, words in _DISTRIBUTIONS.items())
+        names = ", ".join(f"{word}({words})" for word, words in _DISTRIBUTIONS.items())
         raise _refused(text, f"no distribution '{text_in_one_line(name)}'; known are {names}")
     expected = f"{name}({_DISTRIBUTIONS[name]}) has two numbers, such as normal(450 mm, 0.2 mm)"
-    numbers, unit = _numbers(text, inside.split(","), 2, expected)
-    first, second = map(float, numbers)
-    if name == "normal":
-        if second <= 0:
-            raise _refused(text, f"the standard deviation must be more than 0, got {numbers[1]}")
-        return NormalDist(first, second), unit
-    if second <= first:
+    is_normal = name == "normal"
+    (first, second), unit = _numbers(text, inside.split(","), 2, expected, has_step=is_normal)
+    if is_normal:
+        if second.value <= 0:
+            raise _refused(text, f"the standard deviation must be more than 0, got {second.text}")
+        return NormalDist(first.value, second.value), unit
+    if second.value <= first.value:
         raise _refused(
-            text, f"the least value must be less than the most, got {numbers[0]} and {numbers[1]}"
+            text, f"the least value must be less than the most, got {first.text} and {second.text}"
         )
-    return Uniform(first, second), unit
+    return Uniform(first.value, second.value), unit
 
 
 class Plan:

@@ -25,7 +25,7 @@ from kurbel.errors import KurbelError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import case_names
 from kurbel.solver.case import Case
-from kurbel.tables.tables import grouped, together
+from kurbel.tables.tables import grouped, joined_names
 
 _BLOCK, _SLOW_BLOCK = 1000, 10
 """Rows computed together, and those of designs that are computed one after another."""
@@ -73,7 +73,9 @@ class Sweep:
         self._study = Study(
             spec.origin, self._keys, texts, spec.columns, spec.with_angles, cases=spec.cases
         )
-        self._numbers = list(map(numbers_of, self.plan.inputs, self._study.binder.kinds))
+        self.kinds = self._study.binder.kinds
+        """The kind of number of each key, '' for words."""
+        self._numbers = list(map(numbers_of, self.plan.inputs, self.kinds))
         self.texts = ("keeps", "broken", "failure") if self._study.limits else ("failure",)
         """Columns after the values: whether all limits are kept, `yes`, `no` or `` where one cannot be judged, the
         first that is not; why there are no values, or which limits cannot be judged."""
@@ -82,11 +84,12 @@ class Sweep:
     def heads(self) -> tuple[Head, ...]:
         """The heads of the columns, with units that are chosen by the first values."""
         heads = []
-        for column, kind in zip(self._columns(range(1)), self._study.binder.kinds):
+        binder = self._study.binder
+        for column, kind, zero in zip(self._columns(range(1)), binder.kinds, binder.zeros):
             first = float(column.numbers[column.indices[0]])
             size = first if math.isfinite(first) else 0.0
             unit = shown_unit(kind, self.spec.system, size) if kind else ""
-            heads.append(Head(column.input.key, unit, kind, input=True))
+            heads.append(Head(column.input.key, unit, kind, input=True, zero=zero))
         return (*heads, *self._study.heads(self.spec.system))
 
     @cached_property
@@ -118,18 +121,10 @@ class Sweep:
         for group in grouped(range(len(answers)), content):
             name, column = heads[count + group[0]]
             if len(group) > 1:
-                owners = together([answers[index].subject for index in group])
+                owners = joined_names([answers[index].subject for index in group])
                 name = f"{owners}.{name.rpartition('.')[2]}"
             shown.append((name, column))
         return shown
-
-    def types(self) -> list[str]:
-        """Return the type of each column: `number`, `list`, or `text`, also where words occur among numbers."""
-        types = ["list" if head.listed else "number" for head in self.heads]
-        for index, numbers in enumerate(self._numbers):
-            if not np.isfinite(numbers).all():
-                types[index] = "text"
-        return types
 
     def blocks(self, rows: range) -> Iterator[range]:
         """Yield the blocks of rows, counted from 0, that have any of these rows.

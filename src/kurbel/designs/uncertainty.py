@@ -134,7 +134,7 @@ def _size_of(spread: str, value: float, kind: str) -> float:
     """Return an uncertainty in SI: with a unit, or in percent of the value."""
     if spread.endswith("%"):
         return abs(value) * parse_ratio(spread)
-    return parse_quantity(spread, kind)
+    return parse_quantity(spread, kind, is_difference=True)
 
 
 def uncertainties(
@@ -259,9 +259,9 @@ def with_uncertainty(
         return report
     requested = list(_numeric_answers(case, report.command))
     if named:
-        printed = {
-            (part.name, key_value.id) for part in report.all_parts for key_value in part.key_values
-        }
+        printed = set[tuple[str | float | None, str]]()
+        for part in report.all_parts:
+            printed.update((part.name, key_value.id) for key_value in part.key_values)
         requested = [
             answer for answer in requested if (answer.subject, answer.quantity.id) in printed
         ]
@@ -310,7 +310,7 @@ def _with_table(
         quantity, kind = uncertain.answer.quantity, uncertain.answer.kind
         names.append((quantity.id, quantity.symbol, unit or "1"))
         values.append(convert(uncertain.value, kind, unit))
-        spreads.append(convert(uncertain.spread, kind, unit))
+        spreads.append(convert(uncertain.spread, kind, unit, is_difference=True))
         samples.append(uncertain.sample or None)
     columns = [
         Column("value", "value", "value", "", tuple(values), alone=6),

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from kurbel.machine.pumped import Gas, Pump
     from kurbel.machine.several import EqualCylinders
     from kurbel.machine.shaft_line import ShaftLine, ShaftPart
-    from kurbel.machine.turning import Coupling, Flywheel, KnownDiagram, Load
+    from kurbel.machine.shaft_side import Coupling, Flywheel, KnownDiagram, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
 
@@ -72,13 +72,13 @@ def _with_position(cylinder: Cylinder) -> Cylinder:
 
 
 def _flywheel() -> type[Flywheel]:
-    from kurbel.machine.turning import Flywheel
+    from kurbel.machine.shaft_side import Flywheel
 
     return Flywheel
 
 
 def _load() -> type[Load]:
-    from kurbel.machine.turning import Load
+    from kurbel.machine.shaft_side import Load
 
     return Load
 
@@ -90,7 +90,7 @@ def _known_effort() -> type[KnownEffort]:
 
 
 def _coupling() -> type[Coupling]:
-    from kurbel.machine.turning import Coupling
+    from kurbel.machine.shaft_side import Coupling
 
     return Coupling
 
@@ -370,7 +370,11 @@ class Machine(Record):
         except RuleError as error:
             raise RuleError(*error.faults, *faults) from None
         refuse(*faults)
-        return machine
+        if machine.effort is None:
+            return machine
+        # the cycles of a recording
+        effort = machine.effort.of_cycle(machine.revolutions)
+        return machine if effort is machine.effort else replace(machine, effort=effort)
 
     @classmethod
     def faults_of_some(cls, values: ValuesByKey) -> list[Fault]:
@@ -397,6 +401,9 @@ class Machine(Record):
         for index, cylinder in enumerate(self.cylinders):
             for rule in self._rules_of_cylinder(cylinder):
                 yield rule.below("cylinders", index)
+        if self.pump:
+            pistons = [piston for cylinder in self.cylinders for piston in cylinder.pistons]
+            yield from self.pump.rules_of(pistons)
         if self.oil_film:
             frictions = [cylinder.friction for cylinder in self.cylinders]
             for rule in self.oil_film.rules_beside(self.crankshaft, frictions):
@@ -489,7 +496,9 @@ class Machine(Record):
     def cycle_of_piston(self, cylinder: Cylinder, number: int) -> str:
         """Return the working cycle of a piston of a cylinder; number: 0 for its own, then the tandem ones."""
         cycle = self.cycle_of(cylinder)
-        return cylinder.pistons[number].cycle_beside(cycle) if number else cycle
+        if not number:
+            return cycle
+        return cylinder.pistons[number].cycle_beside(cycle)
 
     def piston_names(self, cylinder: Cylinder) -> tuple[str, ...]:
         """Return the names of the pistons with an indicator, as in limits, if a rod has several: `pump`.

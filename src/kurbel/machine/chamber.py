@@ -31,3 +31,9 @@ class ChamberCard:
     def loaded(self) -> Any:
         """Return the card with its valves at work."""
         return self
+
+
+class StrokeCard(ChamberCard):
+    """A card that gives the pressure over the stroke; another one over the crank angle."""
+
+    by_stroke: ClassVar[Literal[True]] = True

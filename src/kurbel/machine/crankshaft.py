@@ -189,7 +189,9 @@ class Crankshaft(Record):
     @property
     def place_A(self) -> float:
         """Place of bearing A in m from the middle of the pin, positive toward B: −a, and a for an overhung crank."""
-        return self.a if self.overhung else -self.a
+        if self.overhung:
+            return self.a
+        return -self.a
 
     @property
     def span(self) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from kurbel.arrays import Truth
 from kurbel.crank_angle import CYCLES, CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
+from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.record import (
     FieldValue,
     Record,
@@ -34,10 +35,12 @@ from kurbel.machine.parts import (
 )
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
+from kurbel.numerics.arithmetic import where
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
     from kurbel.machine.link_rod import LinkRod
+    from kurbel.machine.load import Force
     from kurbel.machine.valve import Valve
 
 MOST_TURNS = 100
@@ -59,11 +62,7 @@ _OTHER_NAMES = {
 """Common name of a mechanism -> the word of the machine file."""
 
 
-_SPRING = (
-    "a spring on what slides has no key; a straight card on a piston of 1 m2 has its force: "
-    "'bore: 1128.379167 mm', and in 'indicator.head_end' 'unit: Pa', "
-    "'expansion: [[0, F1], [1, F2]]', 'compression: [[1, F2], [0, F1]]' with forces in N"
-)
+_SPRING = "a spring on what slides or swings is written 'force: {spring: 50 N/mm, preload: 1 kN}'"
 _PIN_OFFSET = (
     "the angle between the two halves of a split crank pin is 'throw_angle'; a piston pin beside the middle of its "
     "piston is an 'offset', a length, negative toward the thrust side"
@@ -85,6 +84,17 @@ def _valve() -> type[Valve]:
     from kurbel.machine.valve import Valve
 
     return Valve
+
+
+def _force() -> type[Force]:
+    from kurbel.machine.load import Force
+
+    return Force
+
+
+def _constant_force(force: float) -> Force:
+    """Return the load of one constant force in N."""
+    return _force()(constant=force)
 
 
 def _shared_counterweights() -> type[SharedCounterweights]:
@@ -116,7 +126,7 @@ class Cylinder(Record):
     from a file that gives none, until the machine sets it; throw_angle: degrees by which its pin lags that of cylinder
     1, None where the file does not give it; bank_angle: degrees from the stroke line of cylinder 1 to
     its own, in the sense of rotation; axial_position: place along the shaft in m, None where it is not known;
-    ram_force, moment: what the output works against, where it slides or only swings. Raises
+    ram_force, moment: what the output works against, where it slides or only swings; force: what acts on either. Raises
     RuleError for parts that the mechanism cannot have.
     """
 
@@ -193,6 +203,15 @@ class Cylinder(Record):
     moment: Moment | None = field(
         Moment, "Resisting moment of a mechanism whose output swings or rotates", absent="none"
     )
+    force: Force | None = field(
+        OneOf(
+            NumberForm("force", becomes=lambda force, _: _constant_force(force)),
+            RecordForm(_force),
+        ),
+        "Load on what slides or swings, positive where x or θ rises (toward the shaft): a constant force, or a mapping",
+        absent="none",
+        example="{spring: 50 N/mm, preload: 1 kN}",
+    )
     cycle: str | None = field(
         tuple(CYCLES), "Working cycle of this cylinder, among others", absent="that of the machine"
     )
@@ -215,11 +234,11 @@ class Cylinder(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
         like = "'like' is for a list of 'cylinders', after another cylinder"
-        yield Rule("like", "like" in given, like)
+        yield Rule("like", "like" in values, like)
         alone = "a tandem piston is in addition to the cylinder's own one; give its 'bore'"
-        yield Rule("tandem", bool(given.get("tandem")) and "piston" not in given, alone)
+        yield Rule("tandem", bool(values.get("tandem")) and "piston" not in values, alone)
 
     @classmethod
     def of_keys(
@@ -232,8 +251,8 @@ class Cylinder(Record):
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
         pistons = () if piston is None else (piston, *tandem)
-        given = {"name": "", "crank_position": None, "throw_angle": throw_angle, **keys}
-        return cls(pistons=pistons, **given)
+        values = {"name": "", "crank_position": None, "throw_angle": throw_angle, **keys}
+        return cls(pistons=pistons, **values)
 
     @cached_property
     def timed_pistons(self) -> tuple[Piston, ...]:
@@ -252,6 +271,7 @@ class Cylinder(Record):
         if self.valve:
             yield from (rule.below("valve") for rule in self.valve.rules_on(self.mechanism))
         yield from _of_events(self)
+        yield from _of_strokes(self)
         at_point = (
             [rule.below("point") for rule in self.point.rules_on(self.mechanism)]
             if self.point
@@ -330,7 +350,9 @@ def with_article(kind: str) -> str:
     >>> with_article("oscillating-cylinder")
     'an oscillating-cylinder'
     """
-    return f"an {kind}" if kind[0] in "aeiou" else f"a {kind}"
+    if kind[0] in "aeiou":
+        return f"an {kind}"
+    return f"a {kind}"
 
 
 def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
@@ -339,9 +361,11 @@ def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
         message = "the cylinder swings with its piston; kurbel takes no masses there"
         yield Rule("masses", cylinder.masses is not None, message)
         yield Rule("inclination", cylinder.inclination is not None, message)
+    if cylinder.force is not None:
+        yield from (rule.below("force") for rule in cylinder.force.rules_on(cylinder.mechanism))
     if cylinder.mechanism.slides:
         to_and_fro = (
-            f"{with_article(kind)} moves its output to and fro; give 'ram_force', a force, instead"
+            f"{with_article(kind)} moves its output to and fro; give 'ram_force' or 'force' instead"
         )
         yield Rule("moment", moment is not None, to_and_fro)
         return
@@ -410,6 +434,23 @@ def _of_events(cylinder: Cylinder) -> Iterator[Rule]:
             valve = None if number else cylinder.valve
             shuts_early = None if valve is None else valve.compresses
             yield from (rule.below(*path, end) for rule in card.rules_of_events(shuts_early))
+
+
+def _of_strokes(cylinder: Cylinder) -> Iterator[Rule]:
+    """Heat that is released over the crank angle fits the strokes of its piston."""
+    for number, piston in enumerate(cylinder.pistons):
+        path = ("tandem", number - 1, "indicator") if number else ("indicator",)
+        areas = {"head_end": piston.head_area, "crank_end": piston.crank_area}
+        for end, card in piston.chambers.items():
+            if card.by_stroke or card.traced:
+                continue
+            volume = areas[end] * abs(piston.lever_ratio) * cylinder.mechanism.stroke
+            inner, outer = cylinder.mechanism.dead_centres()
+            outstroke = outer - inner
+            expands_outward = (end == "head_end") != (piston.lever_ratio < 0)
+            expansion = where(expands_outward, outstroke, 360.0 - outstroke)
+            rules = card.rules_of_strokes(360.0 - expansion, expansion, volume)
+            yield from (rule.below(*path, end) for rule in rules)
 
 
 def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:

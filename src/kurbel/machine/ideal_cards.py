@@ -13,8 +13,9 @@ import numpy as np
 
 from kurbel.arrays import Number, Truth
 from kurbel.declared.forms.values import CLEARANCE, CLEARANCE_OR_NONE
+from kurbel.declared.keys import Key
 from kurbel.declared.record import FieldValue, Record, Rule, alternative, field
-from kurbel.machine.chamber import ChamberCard
+from kurbel.machine.chamber import ChamberCard, StrokeCard
 
 _CLEARANCE = "Clearance volume over stroke volume"
 AIR_EXPONENT = 1.4
@@ -62,7 +63,7 @@ def _above_vacuum(lift: Number, **pressures: Number | None) -> Iterator[Rule]:
             yield Rule((), pressure + lift <= 0, message, {"pressure": pressure})
 
 
-def _diagram_factor() -> FieldValue:
+def diagram_factor_field() -> FieldValue:
     """Return the field of the diagram factor of a card."""
     text = (
         "p_i of the true card over that of the theoretical one, "
@@ -89,7 +90,7 @@ def _only_two_stroke(card: Record, cycle: str) -> Rule:
     return Rule((), cycle != "two-stroke", message)
 
 
-class Steam(ChamberCard, Record):
+class Steam(StrokeCard, Record):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
 
     cut_off: None where a valve sets this and the other events (`kurbel.machine.valve`).
@@ -131,7 +132,7 @@ class Steam(ChamberCard, Record):
         example="0.01",
     )
     exponent: float = _exponent("Exponent of expansion and compression", "1, the hyperbola", 1.0)
-    diagram_factor: float = _diagram_factor()
+    diagram_factor: float = diagram_factor_field()
 
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
     by_steam: ClassVar[bool] = True
@@ -196,7 +197,7 @@ class Steam(ChamberCard, Record):
         yield from _above_vacuum(lift, admission=self.admission, exhaust=self.exhaust)
 
 
-class Compressor(ChamberCard, Record):
+class Compressor(StrokeCard, Record):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance."""
 
     suction: float = _pressure("Pressure while the chamber fills")
@@ -223,7 +224,9 @@ class Compressor(ChamberCard, Record):
 
     def loaded(self) -> "Compressor":
         """Return the card with its valves at work."""
-        return replace(self, unloaded=False) if self.unloaded else self
+        if not self.unloaded:
+            return self
+        return replace(self, unloaded=False)
 
     def rules(self) -> Iterator[Rule]:
         yield _order("delivery", self.delivery, "suction", self.suction)
@@ -231,7 +234,9 @@ class Compressor(ChamberCard, Record):
     @property
     def of_expansion(self) -> float:
         """Exponent of the expansion of what is left in the clearance."""
-        return self.exponent if self.expansion_exponent is None else self.expansion_exponent
+        if self.expansion_exponent is None:
+            return self.exponent
+        return self.expansion_exponent
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a delivery that is never reached."""
@@ -257,8 +262,8 @@ class Compressor(ChamberCard, Record):
         yield Rule((), draws_nothing, message)
 
 
-class _Engine(ChamberCard, Record):
-    """The common part of the cards of combustion engines.
+class EngineCard(ChamberCard):
+    """What the cards of combustion engines have in common, whatever pressure they have while the charge burns.
 
     exhaust: pressure of the exhaust stroke of a four-stroke cycle, None for that of the intake; a two-stroke engine
     changes its gas at the outer dead centre.
@@ -266,47 +271,12 @@ class _Engine(ChamberCard, Record):
 
     burns: ClassVar[bool] = True
 
-    intake: float = _pressure(
-        "Pressure in the cylinder when compression begins, and while it fills"
-    )
-    peak: float | None = _pressure(
-        "Pressure of injection, reached at constant volume",
-        absent="that at the end of compression",
-        example="33 at",
-        usual="30 to 35 at (R p. 610)",
-    )
-    _compression_ratio = alternative(
-        "ratio",
-        "Largest over smallest volume; or give `clearance`",
-        "ε",
-        least=1.00001,
-        most=1e6,
-        required=True,
-        example="8",
-        gives=lambda values: {"clearance": 1 / (values["compression_ratio"] - 1)},
-    )
-    clearance: float = field(
-        CLEARANCE, f"{_CLEARANCE}; or give `compression_ratio`", "c", instead="compression_ratio"
-    )
-    exhaust: float | None = _pressure(
-        "Pressure while the burnt gas leaves, in a four-stroke cycle", absent="that of the intake"
-    )
-    exponent: float = _exponent(
-        "Exponent of the compression",
-        "1.4, air",
-        AIR_EXPONENT,
-        gives=lambda values: {
-            "expansion_exponent": values.get("expansion_exponent", values["exponent"])
-        },
-    )
-    expansion_exponent: float = _exponent(
-        "Exponent of the expansion", "that of the compression", AIR_EXPONENT
-    )
-    diagram_factor: float = _diagram_factor()
-
-    def rules(self) -> Iterator[Rule]:
-        if self.peak is not None:
-            yield _order("peak", self.peak, "intake", self.intake)
+    intake: float
+    clearance: float
+    exhaust: float | None
+    exponent: float
+    expansion_exponent: float
+    diagram_factor: float
 
     @property
     def exponents(self) -> tuple[Number, ...]:
@@ -329,7 +299,7 @@ class _Engine(ChamberCard, Record):
         return _factor_notes(self.diagram_factor)
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
-        """Yield what does not fit the cycle or the absolute pressures; also a peak below the compression."""
+        """Yield what does not fit the cycle or the absolute pressures."""
         has_no_exhaust_stroke = cycle != "four-stroke"
         message = (
             "exhaust: a two-stroke engine has no exhaust stroke; "
@@ -337,6 +307,85 @@ class _Engine(ChamberCard, Record):
         )
         yield Rule((), has_no_exhaust_stroke and self.exhaust is not None, message)
         yield from _above_vacuum(lift, intake=self.intake, exhaust=self.exhaust)
+
+
+# the fields of their records
+
+
+def intake_field() -> FieldValue:
+    """Return the field of the pressure when compression begins."""
+    return _pressure("Pressure in the cylinder when compression begins, and while it fills")
+
+
+def compression_ratio_key() -> Key:
+    """Return the key that gives the clearance as the ratio of the volumes."""
+    return alternative(
+        "ratio",
+        "Largest over smallest volume; or give `clearance`",
+        "ε",
+        least=1.00001,
+        most=1e6,
+        required=True,
+        example="8",
+        gives=lambda values: {"clearance": 1 / (values["compression_ratio"] - 1)},
+    )
+
+
+def clearance_field() -> FieldValue:
+    """Return the field of the clearance, which a compression ratio may replace."""
+    return field(
+        CLEARANCE, f"{_CLEARANCE}; or give `compression_ratio`", "c", instead="compression_ratio"
+    )
+
+
+def exhaust_field() -> FieldValue:
+    """Return the field of the pressure of the exhaust stroke."""
+    return _pressure(
+        "Pressure while the burnt gas leaves, in a four-stroke cycle", absent="that of the intake"
+    )
+
+
+def compression_exponent_field() -> FieldValue:
+    """Return the field of the exponent of the compression, which is that of the expansion, too, unless that is given."""
+    return _exponent(
+        "Exponent of the compression",
+        "1.4, air",
+        AIR_EXPONENT,
+        gives=lambda values: {
+            "expansion_exponent": values.get("expansion_exponent", values["exponent"])
+        },
+    )
+
+
+def expansion_exponent_field() -> FieldValue:
+    """Return the field of the exponent of the expansion."""
+    return _exponent("Exponent of the expansion", "that of the compression", AIR_EXPONENT)
+
+
+class _Engine(EngineCard, StrokeCard, Record):
+    """The card of a combustion engine whose largest pressure is given, or follows from its compression."""
+
+    intake: float = intake_field()
+    peak: float | None = _pressure(
+        "Pressure of injection, reached at constant volume",
+        absent="that at the end of compression",
+        example="33 at",
+        usual="30 to 35 at (R p. 610)",
+    )
+    _compression_ratio = compression_ratio_key()
+    clearance: float = clearance_field()
+    exhaust: float | None = exhaust_field()
+    exponent: float = compression_exponent_field()
+    expansion_exponent: float = expansion_exponent_field()
+    diagram_factor: float = diagram_factor_field()
+
+    def rules(self) -> Iterator[Rule]:
+        if self.peak is not None:
+            yield _order("peak", self.peak, "intake", self.intake)
+
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
+        """Yield what does not fit the cycle or the absolute pressures; also a peak below the compression."""
+        yield from super().rules_in(cycle, lift)
         if self.peak is None:
             return
         # the end of the compression

@@ -26,16 +26,18 @@ from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import DiagramPoint, UnitFactor, written_unit
 from kurbel.errors import Fault, refuse
-from kurbel.machine.chamber import ChamberCard
+from kurbel.machine.chamber import StrokeCard
+from kurbel.numerics.arithmetic import some
 
 if TYPE_CHECKING:
     from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam
     from kurbel.machine.measured import Measured
+    from kurbel.machine.wiebe import Wiebe
     from kurbel.traces.correct import Trace
 
 
 @dataclass(frozen=True, eq=False)
-class Rectangle(ChamberCard):
+class Rectangle(StrokeCard):
     """A card of horizontal lines, for any working cycle; pressures in Pa.
 
     level: the pressure on every stroke, None for the ambient; mean: the mean indicated pressure p_i, by which the
@@ -119,7 +121,7 @@ STROKES = {
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
-class Card(ChamberCard, Record):
+class Card(StrokeCard, Record):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
     interpolate: `linear`, or `polytropic`: straight in log p over log V, which needs the clearance volume over
@@ -227,10 +229,9 @@ class Card(ChamberCard, Record):
     def flat(self) -> bool:
         """Whether each line is one pressure, as those of an ideal pump."""
         for line in self.lines:
-            for p in line.pressures:
-                is_same = np.ndim(p) == 0 and p == line.pressures[0]
-                if not is_same:
-                    return False
+            first = line.pressures[0]
+            if not all(np.array_equal(pressure, first) for pressure in line.pressures):
+                return False
         return True
 
     @property
@@ -309,13 +310,19 @@ class Constant(Record):
 
     expansion: float = field("pressure", "Pressure while the chamber grows: suction")
     compression: float = field("pressure", "Pressure while the chamber shrinks: delivery")
+    clearance: float | None = field(
+        CLEARANCE_OR_NONE,
+        "Clearance over stroke volume, for the `bulk_modulus` of the liquid",
+        absent="not known, 0 for a compressible liquid",
+        example="0.5",
+    )
 
     @classmethod
-    def of_keys(cls, expansion: float, compression: float) -> Card:
+    def of_keys(cls, expansion: float, compression: float, clearance: float | None = None) -> Card:
         """Return the card with two horizontal lines."""
         suction = CardLine("expansion", (0.0, 1.0), (expansion, expansion), 0)
         delivery = CardLine("compression", (1.0, 0.0), (compression, compression), 1)
-        return Card((suction, delivery))
+        return Card((suction, delivery), clearance=clearance)
 
 
 def _measured() -> type[Measured]:
@@ -348,6 +355,12 @@ def _diesel() -> type[Diesel]:
     return Diesel
 
 
+def _wiebe() -> type[Wiebe]:
+    from kurbel.machine.wiebe import Wiebe
+
+    return Wiebe
+
+
 _CHAMBER = Keyed(
     cases={
         "mean_pressure": NumberForm(
@@ -359,6 +372,7 @@ _CHAMBER = Keyed(
         "compressor": RecordForm(_compressor),
         "otto": RecordForm(_otto),
         "diesel": RecordForm(_diesel),
+        "wiebe": RecordForm(_wiebe),
     },
     otherwise=RecordForm(Card),
     beside=("diagram_factor", "unloaded"),
@@ -371,8 +385,27 @@ _ONE_PRESSURE = NumberForm(
     or_else=", or a card below it",
     becomes=lambda pressure, _: Rectangle(level=pressure),
 )
-Chamber = Union[Rectangle, Card, "IdealCard", "Trace"]
+Chamber = Union[Rectangle, Card, "IdealCard", "Wiebe", "Trace"]
 """The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
+
+
+def levels_of_strokes(chamber: Chamber | None) -> list[Number] | None:
+    """Return the pressures in Pa that a chamber has, each on a whole stroke; of the ambient none; else None."""
+    if isinstance(chamber, Rectangle):
+        if some(chamber.mean != 0):
+            return None
+        if chamber.level is None:
+            return []
+        return [chamber.level]
+    if not isinstance(chamber, Card):
+        return None
+    levels = list[Number]()
+    for line in chamber.lines:
+        first = line.pressures[0]
+        if not all(np.array_equal(pressure, first) for pressure in line.pressures):
+            return None
+        levels.append(first)
+    return levels
 
 
 def _mirrored(values: ValuesByKey) -> dict[str, object]:

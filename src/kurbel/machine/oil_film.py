@@ -62,7 +62,7 @@ class FilmBearing(Record):
         above=0,
         instead="clearance",
         example="0.2 mm",
-        gives=lambda given: {"clearance": given["diametral_clearance"] / 2},
+        gives=lambda keys: {"clearance": keys["diametral_clearance"] / 2},
         usual="about 1/1000 of the diameter",
     )
     diameter: float | None = field(
@@ -130,12 +130,12 @@ class OilFilms(Record):
     @property
     def bearings(self) -> dict[str, FilmBearing]:
         """The bearings that have a film, by key."""
-        every = {
+        bearings = {
             "crank_pin": self.crank_pin,
             "crosshead_pin": self.crosshead_pin,
             "journals": self.journals,
         }
-        return {key: bearing for key, bearing in every.items() if bearing is not None}
+        return {key: bearing for key, bearing in bearings.items() if bearing is not None}
 
     def rules(self) -> Iterator[Rule]:
         yield Rule((), not self.bearings, "give 'crank_pin', 'crosshead_pin' or 'journals'")

@@ -331,17 +331,19 @@ class Friction(Record):
 
 
 class RamForce(Record):
-    """A force on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
+    """A force on the ram that opposes its motion, or if negative helps, constant on each stroke: cutting out, dragging back."""
 
     work: float = field(
-        "force", "Force opposing the motion on the working stroke", "P_a", default=0.0, least=0
+        "force",
+        "Force opposing the motion on the working stroke; negative if it helps",
+        "P_a",
+        default=0.0,
     )
     back: float = field(
         "force",
-        "Force opposing the motion on the return stroke",
+        "Force opposing the motion on the return stroke; negative if it helps",
         "P_r",
         default=0.0,
-        least=0,
         key="return",
     )
 
@@ -355,14 +357,16 @@ class Moment(RamForce):
     """A moment on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 
     work: float = field(
-        "torque", "Moment opposing the motion on the working stroke", "M_a", default=0.0, least=0
+        "torque",
+        "Moment opposing the motion on the working stroke; negative if it helps",
+        "M_a",
+        default=0.0,
     )
     back: float = field(
         "torque",
-        "Moment opposing the motion on the return stroke",
+        "Moment opposing the motion on the return stroke; negative if it helps",
         "M_r",
         default=0.0,
-        least=0,
         key="return",
     )
 
@@ -389,7 +393,9 @@ class RodPoint(Record):
 
     def from_crank_pin(self, mechanism: Mechanism) -> float:
         """Return the distance along the rod in m from the crank pin toward the other one."""
-        return self.along if self.origin == "crank_pin" else mechanism.coupler_length - self.along
+        if self.origin == "crank_pin":
+            return self.along
+        return mechanism.coupler_length - self.along
 
     def rules_on(self, mechanism: Mechanism) -> Iterator[Rule]:
         """Yield what keeps the point from being one of this mechanism."""

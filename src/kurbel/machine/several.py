@@ -120,7 +120,9 @@ class EqualCylinders(Record):
         """How many throws there are if each has one cylinder of every bank; None where banks are not alike."""
         angles = self._bank_of_each
         sizes = {angles.count(angle) for angle in angles}
-        return sizes.pop() if len(sizes) == 1 else None
+        if len(sizes) != 1:
+            return None
+        return sizes.pop()
 
     def _master_of(self, index: int, throw: int) -> int:
         """Return the index of the first cylinder on the throw of a cylinder."""

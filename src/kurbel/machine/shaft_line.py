@@ -61,8 +61,8 @@ class ShaftPart(Record):
         OneOf(TEXT, Listing(TEXT)),
         "Name of the cylinder whose crank is here, or a list of those on one pin; its masses count with the mean of "
         "their reduced inertia over one turn",
-        gives=lambda given: {
-            "cylinder": (one,) if isinstance(one := given["cylinder"], str) else one
+        gives=lambda keys: {
+            "cylinder": (name,) if isinstance(name := keys["cylinder"], str) else name
         },
     )
     load: bool | None = field(
@@ -135,38 +135,47 @@ class ShaftPart(Record):
 
     word: str = ""
 
+    def _kinds_and_keys(self) -> list[tuple[str, str]]:
+        """Return the keys that have a value, each after the kind of item to which it belongs."""
+        pairs = []
+        for kind, names in _KEYS.items():
+            pairs += [(kind, name) for name in names if vars(self)[name] is not None]
+        return pairs
+
     def rules(self) -> Iterator[Rule]:
-        given = [
-            (kind, key)
-            for kind, keys in _KEYS.items()
-            for key in keys
-            if vars(self)[key] is not None
-        ]
+        # an item is of one kind
+        pairs = self._kinds_and_keys()
         piece = "'stiffness', or 'diameter' and 'length', of a shaft segment"
         nothing = f"give 'inertia' or 'cylinder' of a mass, {piece}, 'gear', or 'branch'"
-        yield Rule((), not given and not self.word, nothing)
-        for kind, key in given:
-            first, other = given[0]
-            message = f"'{other}' is of a {first}, '{key}' of a {kind}; make two items of them"
-            yield Rule(key, kind != first, message)
-        kind = self.kind if len(dict(given)) == 1 else ""
-        none = self.stiffness is None and self.length is None
-        message = "the segment has no stiffness: give 'stiffness', or 'diameter' and 'length'"
-        yield Rule((), kind == SEGMENT and none, message)
-        none = self.inertia is None and self.cylinder is None
-        yield Rule(
-            "load", kind == "mass" and none, "the mass has no inertia: give 'inertia' or 'cylinder'"
-        )
-        both = self.gear is not None and self.damping is not None
-        yield Rule("damping", both, "is for a mass or a shaft segment; a gear has none")
-        both = self.branch is not None and self.damping is not None
-        yield Rule("damping", both, "is for a mass or a shaft segment; give it in the branch")
-        if self.bore is not None and self.diameter is not None:
-            yield Rule(
-                "bore",
-                self.bore >= self.diameter,
-                "{bore} is not less than the diameter ({diameter})",
+        yield Rule((), not pairs and not self.word, nothing)
+        for kind, key in pairs:
+            first_kind, first_key = pairs[0]
+            message = (
+                f"'{first_key}' is of a {first_kind}, '{key}' of a {kind}; make two items of them"
             )
+            yield Rule(key, kind != first_kind, message)
+
+        # a segment has a stiffness, a mass an inertia
+        kinds = {kind for kind, _ in pairs}
+        if len(kinds) == 1:
+            has_stiffness = self.stiffness is not None or self.length is not None
+            message = "the segment has no stiffness: give 'stiffness', or 'diameter' and 'length'"
+            yield Rule((), self.kind == SEGMENT and not has_stiffness, message)
+            has_inertia = self.inertia is not None or self.cylinder is not None
+            message = "the mass has no inertia: give 'inertia' or 'cylinder'"
+            yield Rule("load", self.kind == "mass" and not has_inertia, message)
+
+        # damping is of masses and segments alone
+        is_damped = self.damping is not None
+        is_damped_gear = is_damped and self.gear is not None
+        yield Rule("damping", is_damped_gear, "is for a mass or a shaft segment; a gear has none")
+        is_damped_branch = is_damped and self.branch is not None
+        message = "is for a mass or a shaft segment; give it in the branch"
+        yield Rule("damping", is_damped_branch, message)
+
+        if self.bore is not None and self.diameter is not None:
+            message = "{bore} is not less than the diameter ({diameter})"
+            yield Rule("bore", self.bore >= self.diameter, message)
 
     @property
     def kind(self) -> str:
@@ -174,10 +183,12 @@ class ShaftPart(Record):
 
         A mass, too, is the flywheel of the machine.
         """
-        given = [
-            kind for kind, keys in _KEYS.items() if any(vars(self)[key] is not None for key in keys)
-        ]
-        return GROUND if self.word == GROUND else (*given, "mass")[0]
+        if self.word == GROUND:
+            return GROUND
+        pairs = self._kinds_and_keys()
+        if not pairs:
+            return "mass"
+        return pairs[0][0]
 
     @property
     def has_inertia(self) -> bool:
@@ -266,7 +277,7 @@ def shaft_faults(
     faults = _crank_faults(parts, cylinders, is_complete=len(read) == len(parts))
     if len(read) == len(parts):
         rules = (*_of_order(read), *_of_whole_line(read))
-        faults += (Fault(place, message) for is_broken, place, message in rules if is_broken)
+        faults += (Fault(path, message) for is_broken, path, message in rules if is_broken)
     return [fault.below(("shaft",)) for fault in faults]
 
 
@@ -277,13 +288,13 @@ def _crank_faults(
     faults, seen = list[Fault](), set[str]()
     there = f"the machine has {', '.join(cylinders) or 'none'}"
     for item in _items(parts):
-        place = (*item.path, "cylinder")
+        path = (*item.path, "cylinder")
         for name in item.part.cylinder or ():
             if name not in cylinders:
                 hint = did_you_mean(name, tuple(cylinders))
-                faults.append(Fault(place, f"no cylinder '{name}'{hint}; {there}"))
+                faults.append(Fault(path, f"no cylinder '{name}'{hint}; {there}"))
             elif name in seen:
-                faults.append(Fault(place, f"'{name}' is in the shaft line twice"))
+                faults.append(Fault(path, f"'{name}' is in the shaft line twice"))
             seen.add(name)
 
     # a name that is no cylinder may be one of those that are missing
@@ -380,8 +391,8 @@ def _of_whole_line(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str
     kinds = [item.part.kind for item in items]
 
     if cranks:
-        both = "a shaft that is held at both ends does not turn a crank; leave one 'ground' out"
-        yield len(grounds) > 1, cranks[0].path, both
+        message = "a shaft that is held at both ends does not turn a crank; leave one 'ground' out"
+        yield len(grounds) > 1, cranks[0].path, message
     single = "a single mass cannot vibrate; give a second one and the shaft segment between them"
     is_alone = kinds.count("mass") + min(len(grounds), 1) < 2
     is_geared_only = "gear" in kinds and SEGMENT not in kinds
@@ -396,13 +407,13 @@ def _of_whole_line(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str
             return
 
 
-def line_of(given: Sequence[ShaftPart | str], cylinders: Sequence[str] = ()) -> ShaftLine:
+def line_of(parts: Sequence[ShaftPart | str], cylinders: Sequence[str] = ()) -> ShaftLine:
     """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError.
 
     All is referred to the shaft of the cranks: inertia, damping and stiffness by the square of the ratio of speeds.
     """
-    refuse(*shaft_faults(given, cylinders))
-    return _Assembly(_of_words(given)).line
+    refuse(*shaft_faults(parts, cylinders))
+    return _Assembly(_of_words(parts)).line
 
 
 class _Assembly:

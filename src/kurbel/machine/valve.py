@@ -420,7 +420,9 @@ class Valve(Record):
         """σ, the way in which the slope of the eccentric rod displaces the valve."""
         is_inside = self.admission == "inside"
         are_both_or_none = is_inside == self.reversing_rocker
-        return 1.0 if are_both_or_none else -1.0
+        if are_both_or_none:
+            return 1.0
+        return -1.0
 
     @cached_property
     def shift(self) -> Number:

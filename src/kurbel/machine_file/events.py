@@ -89,7 +89,9 @@ class Parser:
         except yaml.MarkedYAMLError as error:
             self.reading.faults.append(explain(error, yaml_lines(self.text)))
             return REFUSED
-        return Plain() if tree is None else tree
+        if tree is not None:
+            return tree
+        return Plain()
 
     def position(self, path: Path, at_key: bool) -> TextPosition:
         """Return where in the text a path is, or the part of it that exists; at_key: its key, not its value."""

@@ -298,7 +298,9 @@ def _short(value: Node) -> str:
     """Return a value in one line; a long list is shortened to its ends and its length."""
     if not isinstance(value, list):
         text = " ".join(str(value).split())
-        return text if len(text) <= _LONGEST else f"{text[:_LONGEST]} …"
+        if len(text) <= _LONGEST:
+            return text
+        return f"{text[:_LONGEST]} …"
     texts = [_short(item) for item in value]
     if len(texts) > _MOST:
         return f"[{', '.join(texts[:3])}, …, {texts[-1]}] ({len(texts)} in all)"

@@ -2,16 +2,13 @@
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
 
 from kurbel.declared.forms.making import Maker
 from kurbel.declared.forms.structures import ReadMapping, RecordForm, key_places
-from kurbel.declared.numerals import WRITTEN, familiar
 from kurbel.declared.reading import (
     REFUSED,
-    Node,
     Plain,
     Reading,
     StopReading,
@@ -19,13 +16,13 @@ from kurbel.declared.reading import (
     node_kind,
     text_in_one_line,
 )
-from kurbel.declared.units import ZEROED_UNITS, unit_names
-from kurbel.errors import Fault, MachineFileError, Path, UsageError
+from kurbel.errors import Fault, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import located, parse
 from kurbel.machine_file.overrides import set_over, with_override
+from kurbel.machine_file.zeros import without_zeros
 from kurbel.quantities import KEY_VALUES
 from kurbel.quantity import Quantity
 
@@ -115,7 +112,7 @@ def read_values(origin: Origin, reading: Reading) -> ReadMapping:
     mapping = REFUSED
     try:
         if isinstance(tree, dict):
-            keys = {"name": origin.stem, **_without_zeros(tree, reading)}
+            keys = {"name": origin.stem, **without_zeros(tree, reading)}
             mapping = ROOT.read(reading, keys, ())
             Maker(reading).made(mapping)
         elif isinstance(tree, Plain) and not tree:
@@ -133,85 +130,3 @@ def read_values(origin: Origin, reading: Reading) -> ReadMapping:
     of_overrides = [fault for fault in others if fault.override]
     of_file = [fault for fault in others if not fault.override]
     raise origin.error(*faults_of_yaml, *of_overrides, *located(origin.text, of_file))
-
-
-# pressure units that name their zero, such as psia and barg, must agree with the reference of the value; in the tree
-# they are replaced by psi and bar, so that no other code needs to handle them
-
-_REFERENCES = {
-    "ambient": "absolute",
-    "vapour_pressure": "absolute",
-    **dict.fromkeys(("offset", "mean_pressure", "drawn"), ""),
-}
-"""Keys whose pressures are not relative to the reference of the indicator: '' for differences of pressure."""
-_ZEROED = re.compile(rf"((?:{WRITTEN})?\s*)({'|'.join(ZEROED_UNITS)})")
-
-
-def _without_zeros(tree: Node, reading: Reading, path: Path = (), reference: str = "") -> Any:
-    """Return a tree without such units; one that does not agree with its reference, gauge or absolute, is a fault.
-
-    Pressures of an indicator are gauge or absolute by its `pressures`, the ambient is absolute, others are neither.
-    Where all units of an indicator name the vacuum, `pressures` need not be given.
-    """
-    if isinstance(tree, dict):
-        mapping = {}
-        if path[-1:] == ("indicator",):
-            if "pressures" not in tree and set(_zeros(tree)) == {"absolute"}:
-                mapping["pressures"] = "absolute"
-            written = tree.get("pressures", mapping.get("pressures"))
-            reference = "absolute" if written == "absolute" else "gauge"
-        for key, node in tree.items():
-            reference_of_key = _REFERENCES.get(key, reference)
-            mapping[key] = _without_zeros(node, reading, (*path, key), reference_of_key)
-        return mapping
-    if isinstance(tree, list):
-        has_points = bool(tree) and isinstance(tree[0], list)
-        if has_points:  # of bare numbers
-            return tree
-        return [
-            _without_zeros(node, reading, (*path, index), reference)
-            for index, node in enumerate(tree)
-        ]
-    return _without_zero(tree, reading, path, reference) if isinstance(tree, str) else tree
-
-
-def _zeros(tree: Node, key: str = "") -> Iterator[str]:
-    """Yield the zero of every pressure that has one: `absolute`, `gauge`, or '' where its unit does not name it."""
-    if isinstance(tree, dict):
-        for name, node in tree.items():
-            if name not in _REFERENCES:
-                yield from _zeros(node, name)
-    elif isinstance(tree, list):
-        has_points = bool(tree) and isinstance(tree[0], list)
-        for node in () if has_points else tree:
-            yield from _zeros(node, key)
-    elif isinstance(tree, str):
-        text = familiar(tree).strip()
-        number = re.match(WRITTEN, text)
-        unit = text[number.end() :].strip() if number else text
-        if number or key == "unit":
-            if unit in ZEROED_UNITS:
-                yield ZEROED_UNITS[unit][0]
-            elif unit in unit_names("pressure"):
-                yield ""
-
-
-def _without_zero(text: str, reading: Reading, path: Path, reference: str) -> Node:
-    """Return a text with psi in place of psia or psig, if it is a pressure of this reference."""
-    pressure = _ZEROED.fullmatch(familiar(text).strip())
-    if pressure is None:
-        return text
-    number, unit = pressure.groups()
-    if path[-1] != "unit" and not number.strip():
-        return text
-    zero, plain = ZEROED_UNITS[unit]
-    if zero == reference:
-        return type(text)(number + plain)
-    if not reference:
-        advice = f"but this pressure has no zero; write the unit {plain}"
-    elif path[-1] == "ambient":
-        advice = f"but the ambient is absolute; write the absolute pressure in {plain}"
-    else:
-        other = f"write 'pressures: {zero}', or the {reference} pressure in {plain}"
-        advice = f"but 'pressures: {reference}' holds here; {other}"
-    return reading.fault(path, f"'{unit}' is {zero}, {advice}")

@@ -21,7 +21,14 @@ from kurbel.declared.forms.structures import (
 from kurbel.declared.forms.values import Form, NumberForm, Schema, Text
 from kurbel.declared.keys import required
 from kurbel.declared.numerals import RATIO, WRITTEN
-from kurbel.declared.units import KINDS, range_of, unit_names
+from kurbel.declared.units import (
+    FEET_AND_INCHES,
+    KINDS,
+    ZEROED_UNITS,
+    listed_units,
+    range_of,
+    unit_names,
+)
 from kurbel.machine_file.reader import ROOT, key_values
 from kurbel.quantity import Quantity
 
@@ -128,10 +135,13 @@ def _of_number(form: NumberForm, definitions: Schema) -> Schema:
         number["pattern"] = f"^\\s*{RATIO}\\s*$"
     else:
         name = f"quantity_{form.kind}"
-        units = ", ".join(unit_names(form.kind))
+        units = ", ".join(listed_units(form.kind))
+        written = f"{WRITTEN}\\s*{_unit_pattern(form.kind)}"
+        if form.kind == "length":
+            written = f"(?:{written}|{FEET_AND_INCHES})"
         definitions[name] = {
             "type": "string",
-            "pattern": f"^\\s*{WRITTEN}\\s*{_unit_pattern(form.kind)}\\s*$",
+            "pattern": f"^\\s*{written}\\s*$",
             "description": f"{form.expected}; in size {range_of(form.kind)}; units: {units}",
             # draft-07 has no words for a fault; editors (YAML and JSON language servers, ajv) take them from these
             "errorMessage": f"write {form.expected}",
@@ -143,12 +153,19 @@ def _of_number(form: NumberForm, definitions: Schema) -> Schema:
     others: list[object] = [*form.words]
     if form.zero:
         others.append(0)
-    return {"anyOf": [number, {"enum": others}]} if others else number
+    if not others:
+        return number
+    return {"anyOf": [number, {"enum": others}]}
 
 
 def _unit_pattern(kind: str) -> str:
     """Return a pattern of the units of a kind in every spelling that is read: `kgf m2` is also `kgf·m²`, `kgf*m^2`."""
     patterns = []
+    if kind in ("length", "film"):
+        patterns.append("feet|foot|inch(?:es)?|'{1,2}|[\"′’″”]")
+    if kind == "pressure":
+        plain = "|".join(unit for unit in unit_names(kind) if unit not in ZEROED_UNITS)
+        patterns.append(f"(?:{plain}) ?(?:abs(?:olute)?|gauge|\\((?:a|g|abs)\\))")
     for unit in unit_names(kind):
         pattern = re.escape(re.sub(r"(?<=[a-z])2", "²", unit))
         pattern = pattern.replace("\\ ", "[ ·*]+")
@@ -257,7 +274,9 @@ def _describe_variant(
 def _demands(form: RecordForm) -> Schema:
     """Return the schema of the keys that must be given."""
     names = required(form.keys)
-    return {"required": names} if names else {}
+    if not names:
+        return {}
+    return {"required": names}
 
 
 def _none_of(groups: list[list[str]]) -> Schema:

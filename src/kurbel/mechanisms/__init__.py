@@ -28,7 +28,7 @@ class Offer:
 
     factor: takes the mechanism and a crank angle and returns the value in SI over what it is proportional to, of the
     shape of the angle, or None where it is not known. It is proportional to ω to the power `omega`, and to what `force`
-    takes of the state: `P`, `along_rod` (P less friction), `N`, or the moment `M_out` on what swings. unless: takes the
+    takes of the state: `P`, `along_stroke` (P less friction), `N`, or the moment `M_out` on what swings. unless: takes the
     results of the command; where it is true, the column says nothing new there.
     """
 
@@ -51,7 +51,9 @@ class Offer:
         factors = [self.factor(state.mechanism, state.posed), *[state.omega] * self.omega]
         if self.force:
             factors.append(self.force(state))
-        return None if any(factor is None for factor in factors) else math.prod(factors)
+        if any(factor is None for factor in factors):
+            return None
+        return math.prod(factors)
 
 
 def motion_column(
@@ -296,9 +298,9 @@ class Mechanism(Record, ABC):
             over = np.asarray(self.coordinate(angle) - self.start - passed)
             return over, np.asarray(self.slope(angle) * (np.pi / 180))
 
-        found = bracketed_roots(left, low, high, f_low, f_high)
+        root = bracketed_roots(left, low, high, f_low, f_high)
         # near a dead centre the rounding of the coordinate leaves 1e-6 degrees open
-        return np.where(f_low == 0, low, np.where(f_high == 0, high, found))
+        return np.where(f_low == 0, low, np.where(f_high == 0, high, root))
 
     def remaining(self, angle: CrankAngle) -> Number:
         """Return what is left of the stroke to the outer dead centre, s − (q − start), in m (or rad)."""
@@ -350,9 +352,9 @@ class Mechanism(Record, ABC):
             return None
         pin = R * (angle.cos + 1j * angle.sin)
         arm = (along + 1j * across) * unit_vector(coupler.degrees)
-        place, acceleration = pin + arm, arm * (1j * coupler.curvature - coupler.slope**2) - pin
+        position, acceleration = pin + arm, arm * (1j * coupler.curvature - coupler.slope**2) - pin
         return PointMotion(
-            place.real, place.imag, abs(pin + arm * coupler.slope), abs(acceleration)
+            position.real, position.imag, abs(pin + arm * coupler.slope), abs(acceleration)
         )
 
     def sketch(self, angle: CrankAngle) -> Sketch | None:
@@ -484,7 +486,7 @@ NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
 def pin_force(factor: ColumnFactor) -> Offer:
     """Return the force on a crank pin that carries no connecting rod; factor: over P less friction."""
     text = "Force of the sliding block or rod on the crank pin, positive in the direction of P"
-    return force_column("F_pin", "F_z", "force", text, factor, lambda state: state.along_rod)
+    return force_column("F_pin", "F_z", "force", text, factor, lambda state: state.along_stroke)
 
 
 BLOCK_OFFERS = (

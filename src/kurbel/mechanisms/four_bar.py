@@ -146,8 +146,8 @@ class FourBar(Mechanism):
         a, b, c = crank / frame, coupler / frame, rocker / frame
         near, far = min(crank, frame), max(crank, frame)
         flat, near_coupler, near_rocker = (
-            math.fsum(one) / frame
-            for one in (
+            math.fsum(terms) / frame
+            for terms in (
                 (coupler, rocker, -crank, -frame),  # b + c − a − 1
                 (far, coupler, -near, -rocker),  # |1 − a| + b − c
                 (far, rocker, -near, -coupler),
@@ -261,12 +261,16 @@ class FourBar(Mechanism):
     @property
     def swing(self) -> float | None:
         """θ_max − θ_min in degrees; None where the rocker turns fully."""
-        return None if self.turns else self.limits[1] - self.limits[0]
+        if self.turns:
+            return None
+        return self.limits[1] - self.limits[0]
 
     @property
     def stroke(self) -> float:
         """The swing in radians; 2π where the rocker turns fully."""
-        return math.tau if self.swing is None else math.radians(self.swing)
+        if self.swing is None:
+            return math.tau
+        return math.radians(self.swing)
 
     @property
     def start(self) -> float:

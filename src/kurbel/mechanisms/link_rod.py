@@ -55,11 +55,13 @@ class Link(NamedTuple):
 
 def _force_on_knuckle(state: Any) -> Any:
     force = state.knuckle_force
-    return None if force is None else np.abs(force)
+    if force is None:
+        return None
+    return np.abs(force)
 
 
 LINK_OFFERS: tuple[Offer, ...] = (
-    *(offer for offer in ROD_OFFERS if not offer.quantity.id.endswith("_book")),
+    *(offer for offer in ROD_OFFERS if not offer.quantity.id.endswith(("_book", "_error"))),
     force_column(
         "F_knuckle",
         "F_An",

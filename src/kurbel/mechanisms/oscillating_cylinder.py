@@ -35,7 +35,7 @@ class OscillatingCylinder(Mechanism):
     """
 
     crank: float = crank_field()
-    _stroke = stroke_instead(lambda given: {"crank": given["stroke"] / 2})
+    _stroke = stroke_instead(lambda keys: {"crank": keys["stroke"] / 2})
     trunnion: float = field(
         "length",
         "Distance of the trunnions from the shaft",
@@ -104,7 +104,9 @@ class OscillatingCylinder(Mechanism):
         before = displacement * (reach + self._gap)
         after = (self.stroke - displacement) * (reach + self.trunnion + self.crank)
         degrees = np.degrees(2 * np.arctan2(np.sqrt(before), np.sqrt(after)))
-        return degrees if outstroke else 360.0 - degrees
+        if outstroke:
+            return degrees
+        return 360.0 - degrees
 
     # the cylinder
 

@@ -58,17 +58,17 @@ COUPLER_OFFERS = (
 
 def _acceleration(mechanism: Any, results: Any) -> float | None:
     """Return v²/R = R ω² in m/s²; None without a speed."""
-    return None if results.omega is None else mechanism.crank * results.omega * results.omega
+    if results.omega is None:
+        return None
+    return mechanism.crank * results.omega * results.omega
 
 
 def _inertia(mechanism: Any, results: Any) -> float | None:
     """Return m R ω² in N; None without a speed or the mass of the coupler."""
     acceleration = _acceleration(mechanism, results)
-    return (
-        None
-        if acceleration is None or mechanism.coupler_mass is None
-        else mechanism.coupler_mass * acceleration
-    )
+    if acceleration is None or mechanism.coupler_mass is None:
+        return None
+    return mechanism.coupler_mass * acceleration
 
 
 COUPLER_VALUES = (
@@ -166,8 +166,6 @@ class ParallelCrank(Mechanism):
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
         """Name the inertia of the coupler, where its mass is not given."""
-        return (
-            ()
-            if self.coupler_mass is not None
-            else (("inertia of the coupler", "no coupler_mass given"),)
-        )
+        if self.coupler_mass is not None:
+            return ()
+        return (("inertia of the coupler", "no coupler_mass given"),)

@@ -23,7 +23,7 @@ _N_PAIR = force_column(
     "force",
     "Force on each of the two guides of a yoke, in opposite directions",
     lambda yoke, angle: yoke.guide_pair_factor(angle),
-    lambda state: state.along_rod,
+    lambda state: state.along_stroke,
 )
 
 
@@ -37,7 +37,7 @@ class ScotchYoke(Mechanism):
     """
 
     crank: float = crank_field()
-    _stroke = stroke_instead(lambda given: {"crank": given["stroke"] / 2})
+    _stroke = stroke_instead(lambda keys: {"crank": keys["stroke"] / 2})
     guide_length: float | None = field(
         "length",
         "Distance along the stroke of the two guides that keep the yoke from tilting",
@@ -105,7 +105,9 @@ class ScotchYoke(Mechanism):
 
     def guide_pair_factor(self, angle: CrankAngle) -> Number | None:
         """Return R sin φ/l_g: the couple of P on piston and pin, over the distance of the guides; None without it."""
-        return None if self.guide_length is None else self.crank / self.guide_length * angle.sin
+        if self.guide_length is None:
+            return None
+        return self.crank / self.guide_length * angle.sin
 
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
@@ -115,11 +117,15 @@ class ScotchYoke(Mechanism):
             if self.guide_length is not None
             else (("force on the guides", "no guide_length given"),)
         )
-        return guides if self.pin_diameter is not None else (*guides, NO_PIN)
+        if self.pin_diameter is not None:
+            return guides
+        return (*guides, NO_PIN)
 
     def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return φ = 2 arctan √(x/(2R − x)) in degrees, and 360° less on the return stroke."""
         sweep = np.degrees(
             2 * np.arctan2(np.sqrt(displacement), np.sqrt(self.stroke - displacement))
         )
-        return sweep if outstroke else 360.0 - sweep
+        if outstroke:
+            return sweep
+        return 360.0 - sweep

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import Mechanism
@@ -25,12 +27,16 @@ class Setting(NamedTuple):
     @property
     def base(self) -> float:
         """Pressure in Pa that is subtracted from figures of the chamber to get gauge pressures."""
-        return self.ambient if self.absolute else 0.0
+        if not self.absolute:
+            return 0.0
+        return self.ambient
 
     @property
     def lift(self) -> float:
         """Pressure in Pa that is added to figures of the chamber to get absolute pressures."""
-        return 0.0 if self.absolute else self.ambient
+        if self.absolute:
+            return 0.0
+        return self.ambient
 
     @property
     def own_dead_centre(self) -> float:
@@ -38,10 +44,17 @@ class Setting(NamedTuple):
         inner, outer = self.mechanism.dead_centres()
         return inner if self.head_end else outer
 
+    def after_dead_centre(self, degrees: Array) -> Array:
+        """Return crank angles in degrees as those from the chamber's own (firing) dead centre, −½ to ½ cycle."""
+        after = degrees - self.own_dead_centre
+        return np.remainder(after + self.cycle / 2, self.cycle) - self.cycle / 2
+
     def stroke_fraction(self, after: Array) -> Array:
         """Return the fraction of the stroke from the chamber's smallest volume, so many degrees after it."""
         angle = CrankAngle.of(after + self.own_dead_centre)
         displaced = (
             self.mechanism.coordinate(angle) - self.mechanism.start
         ) / self.mechanism.stroke
-        return displaced if self.head_end else 1 - displaced
+        if self.head_end:
+            return displaced
+        return 1 - displaced

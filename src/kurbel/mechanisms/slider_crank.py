@@ -23,6 +23,7 @@ from kurbel.mechanisms import (
     requested_column,
 )
 from kurbel.numerics.arithmetic import bearing, every, magnitude, some, sqrt, total, ulp, where
+from kurbel.quantity import Quantity
 
 _INFINITE = {"infinite": math.inf}
 
@@ -55,15 +56,45 @@ def _book(
     """Return the first-order approximation of a column; formula: for R = 1. With an offset the books have none."""
 
     def factor(mechanism: Any, angle: CrankAngle) -> Number | None:
-        return (
-            mechanism.crank * formula(angle.sin, angle.cos, mechanism.lam)
-            if mechanism.straight
-            else None
-        )
+        if not mechanism.straight:
+            return None
+        return mechanism.crank * formula(angle.sin, angle.cos, mechanism.lam)
 
     return requested_column(
         f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", factor, id, omega
     )
+
+
+def _error(
+    id: str,
+    kind: str,
+    formula: Callable[[CrankAngle, Number, Number], Number],
+    omega: int = 0,
+) -> Offer:
+    """Return the error of the first-order approximation of a column; formula: for R = 1, takes the angle, cos ψ and λ.
+
+    An infinite rod has none.
+    """
+
+    def factor(mechanism: Any, angle: CrankAngle) -> Number | None:
+        if not mechanism.straight or every(mechanism.lam == 0):
+            return None
+        _, cos_psi = mechanism.rod_angle(angle)
+        return mechanism.crank * formula(angle, cos_psi, mechanism.lam)
+
+    quantity = Quantity(
+        f"{id}_error",
+        f"Δ{id}",
+        kind,
+        f"Error of the first order in λ: {id}_0 less {id}",
+        commands=("motion",),
+        extremes=("motion",),
+        called=f"error of {id}_0",
+        after=f"{id}_book",
+        on_request=("motion",),
+        of_book=True,
+    )
+    return Offer(quantity, factor, omega)
 
 
 def _rod_turn(order: int) -> Offer:
@@ -101,6 +132,23 @@ ROD_OFFERS: tuple[Offer, ...] = (
         formulas.first_order_acceleration,
         2,
     ),
+    _error(
+        "x",
+        "length",
+        lambda angle, cos_psi, lam: formulas.displacement_error(angle.sin, cos_psi, lam),
+    ),
+    _error(
+        "c",
+        "velocity",
+        lambda angle, cos_psi, lam: formulas.velocity_error(angle.sin, angle.cos, cos_psi, lam),
+        omega=1,
+    ),
+    _error(
+        "b",
+        "acceleration",
+        lambda angle, cos_psi, lam: formulas.acceleration_error(angle.sin, angle.cos, cos_psi, lam),
+        omega=2,
+    ),
     _rod_turn(1),
     _rod_turn(2),
 )
@@ -115,7 +163,7 @@ class SliderCrank(Mechanism):
     """
 
     crank: float = crank_field()
-    _stroke = stroke_instead(lambda given: {"crank": _crank_of_stroke(given)})
+    _stroke = stroke_instead(lambda keys: {"crank": _crank_of_stroke(keys)})
     rod: float = field(
         "length",
         "Length of the connecting rod, or `infinite`; or give `rod_ratio`",
@@ -133,7 +181,7 @@ class SliderCrank(Mechanism):
         instead="rod",
         example="5",
         usual="5 in horizontal machines, down to 4.5 and 4 in vertical ones (R p. 603)",
-        gives=lambda given: {"rod": given["crank"] * given["rod_ratio"]},
+        gives=lambda keys: {"rod": keys["crank"] * keys["rod_ratio"]},
         key="rod_ratio",
     )
     offset: float = field(
@@ -188,12 +236,11 @@ class SliderCrank(Mechanism):
         """(L − R + e)/L and (L − R − e)/L, the least 1 − sin ψ and 1 + sin ψ; (L + R + e)/L and (L + R − e)/L."""
         if every(self.rod == math.inf):
             return 1.0, 1.0, 1.0, 1.0
-        sums = (
-            (crank, offset)
-            for crank in (-self.crank, self.crank)
-            for offset in (self.offset, -self.offset)
-        )
-        return tuple(total(self.rod, *both) / self.rod for both in sums)
+        gaps = []
+        for crank in (-self.crank, self.crank):
+            for offset in (self.offset, -self.offset):
+                gaps.append(total(self.rod, crank, offset) / self.rod)
+        return tuple(gaps)
 
     @cached_property
     def _reaches(self) -> tuple[float, float]:
@@ -204,7 +251,9 @@ class SliderCrank(Mechanism):
     @cached_property
     def stroke(self) -> float:
         """s = √((L+R)² − e²) − √((L−R)² − e²) = 4LR/(their sum); 2R without offset."""
-        return 2 * self.crank if self.straight else self.crank * (4 / sum(self._reaches))
+        if self.straight:
+            return 2 * self.crank
+        return self.crank * (4 / sum(self._reaches))
 
     def dead_centres(self) -> tuple[float, float]:
         """Return φ_i with sin φ_i = e/(L+R) and φ_o = 180° + arcsin(e/(L−R)), in degrees."""
@@ -340,7 +389,9 @@ class SliderCrank(Mechanism):
         after = (stroke - passed) * (distance + inner) / (line + 1 - lam)
         half = np.arctan2(np.sqrt(before * (1 + line - lam)), np.sqrt(after * (line + lam + 1)))
         lead, sweep = np.degrees(np.arctan2(eps, distance)), np.degrees(2 * half)
-        return lead + sweep if outstroke else 360.0 + lead - sweep
+        if outstroke:
+            return lead + sweep
+        return 360.0 + lead - sweep
 
 
 def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
@@ -387,7 +438,9 @@ def _crank_of_stroke(keys: ValuesByKey) -> Number:
             root = (square - 1) ** 2 - 4 * square * (offset / half) ** 2
             share = np.sqrt((1 + square + np.sqrt(root)) / (2 * square))
     crank = np.where(straight, half, half * share)
-    return crank if crank.ndim else float(crank)
+    if crank.ndim:
+        return crank
+    return float(crank)
 
 
 # Yoke-frame small crank drive (Klein, Schanzlin & Becker), R p. 614: steam and pump piston rod lie in one line, joined
@@ -463,9 +516,13 @@ class YokeFrame(SliderCrank):
 
         The rod is taken as held by this stuffing box alone, which is on the safe side.
         """
-        return None if self.gland is None else self.gland + self.coordinate(angle)
+        if self.gland is None:
+            return None
+        return self.gland + self.coordinate(angle)
 
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
         """Name the bending of the piston rod, where its arm is not known."""
-        return () if self.gland is not None else (("bending of the piston rod", "no gland given"),)
+        if self.gland is not None:
+            return ()
+        return (("bending of the piston rod", "no gland given"),)

@@ -69,9 +69,9 @@ class SlottedLever(Mechanism):
         above=0,
         instead="crank",
         needs="lever",
-        gives=lambda given: (
-            {"crank": given["stroke"] * given["frame"] / (2 * given["lever"])}
-            if given.get("frame") and given.get("lever")
+        gives=lambda keys: (
+            {"crank": keys["stroke"] * keys["frame"] / (2 * keys["lever"])}
+            if keys.get("frame") and keys.get("lever")
             else {}
         ),
         key="stroke",
@@ -181,7 +181,9 @@ class SlottedLever(Mechanism):
     def _height(self) -> float:
         if self.ram_height is not None:
             return self.ram_height
-        return 0.0 if self.rotates else self._end * (1 + self._kappa[1]) / 2
+        if self.rotates:
+            return 0.0
+        return self._end * (1 + self._kappa[1]) / 2
 
     # the lever, and the ram that it drives
 
@@ -260,7 +262,9 @@ class SlottedLever(Mechanism):
     @property
     def swing(self) -> float | None:
         """2 arcsin(r/e) in degrees; None where the lever turns fully."""
-        return None if self.rotates else 2 * bearing(*self._kappa)
+        if self.rotates:
+            return None
+        return 2 * bearing(*self._kappa)
 
     @cached_property
     def _places(self) -> tuple[float, ...]:
@@ -271,13 +275,17 @@ class SlottedLever(Mechanism):
     def stroke(self) -> float:
         """s = 2 R_l r/e (2 R_l for the rotating lever) with a fork head or a swinging lever; of θ without a ram."""
         if not self.slides:
-            return math.tau if self.swing is None else math.radians(self.swing)
+            if self.swing is None:
+                return math.tau
+            return math.radians(self.swing)
         return self._end * (self._places[1] - self._places[0])
 
     @property
     def start(self) -> float:
         """−s/2: x, and θ of what swings, count from the middle of the stroke; where it turns fully from φ = 0."""
-        return 0.0 if self.turns else -self.stroke / 2
+        if self.turns:
+            return 0.0
+        return -self.stroke / 2
 
     def coordinate(self, angle: CrankAngle) -> Number:
         """Return x of the ram in m from the middle of its stroke: R_l sin θ for the fork head; θ without a ram."""
@@ -289,11 +297,9 @@ class SlottedLever(Mechanism):
     def slope(self, angle: CrankAngle) -> Number:
         """Return dx/dφ = R_l θ′ cos(θ + γ)/cos γ in m; for the fork head R_l r (r + e cos φ)(e + r cos φ)/ρ³."""
         lever = self._lever_at(angle)
-        return (
-            self._end * (lever.slope * self._ram(lever.sin, lever.cos).lead)
-            if self.slides
-            else lever.slope
-        )
+        if self.slides:
+            return self._end * (lever.slope * self._ram(lever.sin, lever.cos).lead)
+        return lever.slope
 
     def curvature(self, angle: CrankAngle) -> Number:
         """Return d²x/dφ² = R_l [θ″ dx/dθ + θ′² d²x/dθ²] in m."""
@@ -319,11 +325,9 @@ class SlottedLever(Mechanism):
     def radial(self, angle: CrankAngle) -> Number | None:
         """Return D/P = −(force on the pin over P) (e sin φ)/ρ: the part of that force toward the shaft."""
         force = self.pin_force_factor(angle)
-        return (
-            None
-            if force is None
-            else -force * (self.frame * angle.sin / self._lever_at(angle).reach)
-        )
+        if force is None:
+            return None
+        return -force * (self.frame * angle.sin / self._lever_at(angle).reach)
 
     # what readers see of it
 
@@ -360,7 +364,9 @@ class SlottedLever(Mechanism):
             if math.isinf(self.link)
             else (("S, N", "the forces of the link on the ram are not computed"),)
         )
-        return (*link, lever) if self.pin_diameter is not None else (*link, lever, NO_PIN)
+        if self.pin_diameter is not None:
+            return (*link, lever)
+        return (*link, lever, NO_PIN)
 
     @property
     def notes(self) -> tuple[str, ...]:

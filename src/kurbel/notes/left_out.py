@@ -13,7 +13,7 @@ from kurbel.solver.forces import CylinderForces
 from kurbel.tables.tables import LeftOut
 
 if TYPE_CHECKING:
-    from kurbel.solver.chapters.bearings import Bearing
+    from kurbel.solver.chapters.bearing import Bearing
 
 _IN_EFFORT = ("gas force", "piston rod", "inertia", "weight", "friction")
 """Stages of a cylinder that its turning effort consists of."""
@@ -54,7 +54,8 @@ def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     if mechanism.slides:
         acting = _sliding_forces(machine, cylinder)
     else:
-        acting = {"moment at the output": _unless(cylinder.moment, "no moment given")}
+        has_load = cylinder.moment or cylinder.force
+        acting = {"moment at the output": _unless(has_load, "no moment given")}
     stages |= acting
     absent = {force for force, reason in acting.items() if reason}
     has_force = bool(acting.keys() - absent - {"friction"})
@@ -74,7 +75,8 @@ def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     stages |= dict(mechanism.lacks)
 
     # work and power; of a ram without a piston nobody expects an indicator
-    if mechanism.slides and (cylinder.pistons or not cylinder.ram_force):
+    is_ram = not cylinder.pistons and (cylinder.ram_force or cylinder.force)
+    if mechanism.slides and not is_ram:
         no_gas = acting["gas force"]
         no_power = no_gas or _no_power(machine)
         stages |= {"work": no_gas, "power": no_power}
@@ -105,7 +107,10 @@ def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
             forces[rod] = "no crank_end_rod given, its area is taken as 0"
     # of an engine nobody expects a ram
     if cylinder.ram_force or cylinder.mechanism.quick_return:
-        forces["ram force"] = _unless(cylinder.ram_force, "no ram_force given")
+        has_load = cylinder.ram_force or cylinder.force
+        forces["ram force"] = _unless(has_load, "no ram_force given")
+    elif cylinder.force:
+        forces["load"] = ""
     forces["inertia"] = no_masses or _no_speed(machine)
     forces["weight"] = no_masses
     if cylinder.inclination is None:

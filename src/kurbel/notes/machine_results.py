@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from kurbel.declared.unit_systems import convert, show
+from kurbel.declared.unit_systems import convert, requested_system, rounded_text, show
 from kurbel.solver.case import Case
 
 _BEYOND = 1e308
@@ -90,19 +90,22 @@ def turning_warnings(case: Case) -> Iterator[str]:
 
 _SHELLS = {
     "": (
-        (25.0, "permissible for bronze shells (25)"),
-        (30.0, "too much for bronze shells (25), permissible for white metal (30)"),
-        (35.0, "permissible for the best white metal only (30 to 35)"),
-        (math.inf, "more than permissible for white metal (30 to 35)"),
+        (25.0, "permissible for bronze shells ({bronze})"),
+        (
+            30.0,
+            "too much for bronze shells ({bronze}), permissible for white metal ({white_metal})",
+        ),
+        (35.0, "permissible for the best white metal only ({white_metal})"),
+        (math.inf, "more than permissible for white metal ({white_metal})"),
     ),
     "gunmetal": (
-        (25.0, "permissible for gun metal (25)"),
-        (math.inf, "more than gun metal (25) permits"),
+        (25.0, "permissible for gun metal ({bronze})"),
+        (math.inf, "more than gun metal ({bronze}) permits"),
     ),
     "white-metal": (
-        (30.0, "permissible for white metal (30 to 35)"),
-        (35.0, "permissible only for the best white metal (30 to 35)"),
-        (math.inf, "more than white metal (30 to 35) permits"),
+        (30.0, "permissible for white metal ({white_metal})"),
+        (35.0, "permissible only for the best white metal ({white_metal})"),
+        (math.inf, "more than white metal ({white_metal}) permits"),
     ),
 }
 """Metal of the shells, "" if unknown -> p_m v of the crank pin in kgf m/(cm² s), and the assessment up to it (G)."""
@@ -115,12 +118,24 @@ def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> 
     """
     if pressure_velocity is None:
         return True, ""
-    value = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2")
+    in_units_of_book = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2")
     shells = _SHELLS[metal or ""]
-    bound, verdict = next(shell for shell in shells if value <= shell[0])
+    bound, verdict = next(shell for shell in shells if in_units_of_book <= shell[0])
     is_permitted = bound == shells[0][0]
+
+    # in the units of the book, or in those of the trade
+    scale = 1.0
+    unit = "kgf m/(cm² s)"
+    if requested_system() == "imperial":
+        unit = "psi ft/s"
+        scale = float(convert(pressure_velocity, "pressure_velocity", unit)) / in_units_of_book
+    least, middle, most = (rounded_text(scale * size, 3) for size in (25, 30, 35))
+    verdict = verdict.format(bronze=least, white_metal=f"{middle} to {most}")
     symbol = "k_v = p_m v" if metal else "p_m v"
-    return is_permitted, f"Crank pin: {symbol} = {value:.3g} kgf m/(cm² s); {verdict}."
+    return (
+        is_permitted,
+        f"Crank pin: {symbol} = {rounded_text(in_units_of_book * scale, 3)} {unit}; {verdict}.",
+    )
 
 
 def shells(case: Case) -> tuple[bool, str]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from kurbel.declared.unit_systems import show
+from kurbel.declared.unit_systems import show, show_range
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.bearings import Bearing
+from kurbel.solver.chapters.bearing import Bearing
 from kurbel.solver.chapters.oil_film import FilmShape
 
 _THINNEST = {"crank_pin": 2.0e-6, "journals": 2.5e-6}
@@ -45,7 +45,8 @@ def _of_equal_bearings(key: str, bearings: Sequence[Bearing], case: Case) -> Ite
         yield (
             f"{thinnest.name}: the oil film of {show(thickness.value, 'film', 3)} at "
             f"{thickness.degrees:.4g}° is thinner than any computed one that is known to run well "
-            "(big ends 2 to 4 um, main bearings 2.5 to 4.2 um; The Tribology Handbook, A11.4: "
+            f"(big ends {show_range(2e-6, 4e-6, 'film')}, "
+            f"main bearings {show_range(2.5e-6, 4.2e-6, 'film')}; The Tribology Handbook, A11.4: "
             "a guide for comparison, no proof)"
         )
     shaft = case.machine.crankshaft
@@ -58,7 +59,8 @@ def _of_equal_bearings(key: str, bearings: Sequence[Bearing], case: Case) -> Ite
     if pressure > _WHITE_METAL:
         yield (
             f"{heaviest.name}: a load of {show(pressure, 'stress', 3)} over d l is more than the "
-            "guidance limit of tin white metal, 12 to 14 N/mm^2, of linings up to 0.1 mm 14 to 17 "
+            f"guidance limit of tin white metal, {show_range(12e6, 14e6, 'stress')}, "
+            f"of linings up to {show(1e-4, 'length', 3)} {show_range(14e6, 17e6, 'stress')} "
             "(The Tribology Handbook, A11.2)"
         )
 

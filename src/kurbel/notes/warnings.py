@@ -23,7 +23,8 @@ from kurbel.notes.plausible import cylinder_doubts, machine_doubts
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.piston_works import Brake
-from kurbel.tables.tables import grouped, together
+from kurbel.solver.rod_load import LEAST_REVERSAL
+from kurbel.tables.tables import grouped, joined_names
 
 
 class Note(NamedTuple):
@@ -78,7 +79,9 @@ def machine_notes(case: Case, of_forces: bool = False) -> tuple[Note, ...]:
 
 def _has_force(cylinder: Cylinder) -> bool:
     """Return whether something acts on the mechanism of a cylinder."""
-    return bool(cylinder.pistons or cylinder.masses or cylinder.ram_force or cylinder.moment)
+    loads = (cylinder.ram_force, cylinder.moment, cylinder.force)
+    has_load = any(load is not None for load in loads)
+    return bool(cylinder.pistons or cylinder.masses or has_load)
 
 
 def as_far_as_solved(warnings: Iterable[str], command: str) -> list[str]:
@@ -106,7 +109,7 @@ def of_machine(case: Case) -> Iterator[str]:
     for notes in grouped(machine_notes(case), itemgetter(1)):
         names = [note.cylinder for note in notes if note.cylinder is not None]
         is_named = names and len(case.machine.cylinders) > 1
-        prefix = f"{together(names)}: " if is_named else ""
+        prefix = f"{joined_names(names)}: " if is_named else ""
         yield prefix + notes[0].text
 
 
@@ -300,8 +303,6 @@ _CLOSED = 1e-9
 _COARSE = 0.01
 """An energy residual beyond this is more than an indicator may miss by its spacing."""
 _LARGEST_PEAK = 300e5  # Pa; of combustion engines
-_LEAST_REVERSAL = 15.0, 0.03
-"""Degrees of crank angle, and share of the larger load, that API 618 requires of the reversed rod load."""
 
 
 def valve_warnings(forces: CylinderForces) -> Iterator[str]:
@@ -370,7 +371,7 @@ def _reversal_warnings(forces: CylinderForces) -> Iterator[str]:
         return
     if angle is None or ratio is None:
         return
-    least_angle, least_ratio = _LEAST_REVERSAL
+    least_angle, least_ratio = LEAST_REVERSAL
     if angle < least_angle or ratio < least_ratio:
         yield (
             f"the rod load reverses over {angle:.3g} deg, to {100 * ratio:.3g} % "
@@ -408,7 +409,7 @@ def guide_notes(case: Case) -> Iterator[str]:
         if has_lower_guide and forces.extremes_of("N") is not None and not forces.lifted:
             resting.append(drive.name)
     if resting:
-        name = f"{together(resting)}: " if len(case.cylinders) > 1 else ""
+        name = f"{joined_names(resting)}: " if len(case.cylinders) > 1 else ""
         yield (
             f"{name}Turning {rotation}, "
             "the crosshead rests on the lower guide all round (R p. 602)."

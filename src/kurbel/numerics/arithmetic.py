@@ -54,12 +54,16 @@ def magnitude(value: N) -> N:
 
 def every(condition: Truth) -> bool:
     """Return whether a condition holds: of an array, everywhere."""
-    return condition if isinstance(condition, bool) else bool(condition.all())
+    if isinstance(condition, bool):
+        return condition
+    return bool(condition.all())
 
 
 def some(condition: Truth) -> bool:
     """Return whether a condition holds: of an array, anywhere."""
-    return condition if isinstance(condition, bool) else bool(condition.any())
+    if isinstance(condition, bool):
+        return condition
+    return bool(condition.any())
 
 
 def is_whole(value: Number) -> Truth:

@@ -22,7 +22,9 @@ class Extreme(NamedTuple):
 
 def number_of(answer: object) -> Any:
     """Return a key value without its angle: the value of an extreme, or the key value itself."""
-    return answer.value if isinstance(answer, Extreme) else answer
+    if not isinstance(answer, Extreme):
+        return answer
+    return answer.value
 
 
 def size_of(answer: object) -> float:

@@ -278,7 +278,7 @@ class Pieces:
         # less that of the machines before
         return inside + (before - before[self.first][self.machine])
 
-    def carried(self, values: Array, source: Pieces, lag: Number = 0.0) -> Array:
+    def resampled(self, values: Array, source: Pieces, lag: Number = 0.0) -> Array:
         """Return samples (…, nodes, pieces) of other pieces, within which these lie, at the nodes of these.
 
         lag: degrees by which the other pieces lag these, a number or (machines,).
@@ -485,7 +485,7 @@ def resolved(
     machine = np.concatenate([angles.machine for angles in zeros])
     degrees = np.concatenate([angles.degrees for angles in zeros])
     cut = pieces.split(Angles(machine, degrees))
-    return _halved_until_smooth(cut, function, cut.carried(parts, pieces))
+    return _halved_until_smooth(cut, function, cut.resampled(parts, pieces))
 
 
 def refined(pieces: Pieces, sample: Sample, judged: int | None = None) -> tuple[Pieces, Samples]:
@@ -559,7 +559,7 @@ def _halved_until_smooth(
             values = tested = [value[:, counts] for value in values]
 
         # smooth pieces are done, the others are halved
-        coefficients = [todo.rule.series[-2:] @ value for value in tested]
+        coefficients = [todo.rule.tail @ value for value in tested]
         tails = may_be_highest * np.array([np.abs(last).max(axis=0) for last in coefficients])
         is_rough = _find_rough(todo, tails, size, len(done))
         if not (done or is_rough.any()):

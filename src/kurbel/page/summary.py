@@ -8,7 +8,14 @@ from typing import TypeVar
 
 import numpy as np
 
-from kurbel.checks.limits import CheckEntry, compared_entries, margin_text, margins, name_of
+from kurbel.checks.limits import (
+    CheckEntry,
+    compared_entries,
+    load_cases_of,
+    margin_text,
+    margins,
+    name_of,
+)
 from kurbel.declared.unit_systems import convert, show, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
@@ -21,7 +28,7 @@ from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Subject, before_jumps
 from kurbel.tables.shown import PlaceRow, Places
-from kurbel.tables.tables import BEFORE, grouped, together
+from kurbel.tables.tables import BEFORE, grouped, joined_names
 
 Thing = TypeVar("Thing")
 _LABELS = {
@@ -142,7 +149,7 @@ def machine_kind(case: Case) -> str:
         for piston in cylinder.pistons:
             chambers += piston.chambers.values()
     if not chambers:
-        return "masses"
+        return "masses" if first.force is None else "ram"
     if firings(machine):
         return "engine"
     drives = any(cylinder.drive.drives for cylinder in case.cylinders)
@@ -238,7 +245,7 @@ def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Fact | None:
     decisive = min if id in _SMALLEST else max
     largest = decisive(of_whole or facts, key=lambda fact: abs(fact.value))
     equal = [fact.where for fact in facts if f"{fact.value:.6g}" == f"{largest.value:.6g}"]
-    return largest._replace(where=together(equal) if len(equal) < len(facts) else "")
+    return largest._replace(where=joined_names(equal) if len(equal) < len(facts) else "")
 
 
 def _fact_of(id: str, command: str, subject: Subject) -> Fact | None:
@@ -322,7 +329,7 @@ def limit_verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[SectionIt
             rows.append(_verdict_row(entry, "FAIL" if fails else "PASS"))
             marks.append("bad" if fails else "good")
     table = margins(entries)
-    load_cases = list(dict.fromkeys(case for of_limit in table.values() for case in of_limit))
+    load_cases = load_cases_of(table)
     if rows:
         # in this order: a narrow window shows the first columns
         heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"

@@ -14,6 +14,7 @@ from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.notes.warnings import of_machine
 from kurbel.numerics.extreme import number_of, size_of
+from kurbel.page.contents import ENERGY, INPUT, LEFT_OUT, TABLES, Contents
 from kurbel.page.summary import (
     facts_of,
     firing_order,
@@ -42,13 +43,16 @@ from kurbel.report.keys import meaning, places_of
 from kurbel.solver.case import Case
 from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
 from kurbel.tables.frame import Frame, Subject, provenance
-from kurbel.tables.tables import Part, Report, for_people, grouped, stepped, together
+from kurbel.tables.tables import Part, Report, for_people, grouped, joined_names, stepped
 
 KeyTexts = Sequence[tuple[str, str]]
 """The keys of a machine file with their values, as they were read."""
 OnStep = Callable[[str], None]
 """Called with what is computed next."""
 _NONE = "–"
+_MOST_ROWS_IN_SHORT = 16
+"""Rows of a table of places among the answers of all commands; longer ones are in the section of their command."""
+EVERYTHING = Contents()
 
 
 def _pictures(case: Case, command: str, system: str) -> list[Picture | str]:
@@ -75,15 +79,17 @@ def _drawn(case: Case, kind: PictureKind, system: str, name: str = "") -> list[P
 @np.errstate(all="ignore")  # what overflows is refused by name
 def whole_report(
     case: Case,
-    given: KeyTexts,
+    key_texts: KeyTexts,
     system: str,
     step: float,
     progress: OnStep,
     cases: Sequence[Case] = (),
+    contents: Contents = EVERYTHING,
 ) -> Document:
     """Return the report on a machine: a first page, pictures and tables of each command, energy balance, input.
 
-    given: the keys of its file; step: of the tables in degrees; cases: its load cases.
+    given: the keys of its file; step: of the tables in degrees; cases: its load cases; contents: what is wanted of it.
+    Raises UsageError for a section that is named and that this machine does not have.
     """
     stepped(step, 360.0)  # an invalid step is rejected at once
     machine = case.machine
@@ -99,12 +105,19 @@ def whole_report(
             items.append(f"No solution: {error}")
         except UsageError as error:
             why = str(error).removeprefix(f"{machine.name}: ")
+            if command.word in contents.words:
+                raise UsageError(f"--sections {command.word}: {machine.name}: {why}") from None
             left_out[command.title, why] = []
             continue
         else:
             is_forces = command.word == "forces"
-            items.append(ReportAnswers(_without_motion(report, case) if is_forces else report))
-            if any(part.columns for part in report.all_parts):
+            shown = _without_motion(report, case) if is_forces else report
+            if contents.has(command.word):
+                items.append(ReportAnswers(shown))
+            else:
+                items += _in_short(shown, command.word)
+            has_columns = any(part.columns for part in report.all_parts)
+            if has_columns and contents.has_table(command.word):
                 tables.append(OverAngle(report, command.title))
             for part in report.all_parts:
                 for reason in part.left_out:
@@ -115,21 +128,29 @@ def whole_report(
         if cases and command.in_cases:
             with suppress(KurbelError):
                 items.append(ReportAnswers(cases_report(machine, cases, command.word, system)))
-        pictures = _pictures(case, command.word, system)
+
+        # what is wanted of it
+        pictures: list[Picture | str] = []
+        if contents.has_pictures(command.word):
+            pictures = _pictures(case, command.word, system)
+        if not contents.has_answers(command.word):
+            items.clear()
         sections.append(Section(command.word, command.title, (*pictures, *items)))
 
-    sections += [
-        Section("energy", "Energy balance", tuple(_energy(case, system))),
-        Section("tables", "Over the crank angle", tuple(tables)),
-        Section("left-out", "Left out", tuple(_left_out(left_out))),
-        Section("input", "Input as understood", tuple(_input(case, given))),
-    ]
+    if contents.has(ENERGY):
+        sections.append(Section(ENERGY, "Energy balance", tuple(_energy(case, system))))
+    sections.append(Section(TABLES, "Over the crank angle", tuple(tables)))
+    if contents.has(LEFT_OUT):
+        sections.append(Section(LEFT_OUT, "Left out", tuple(_left_out(left_out))))
+    if contents.has(INPUT):
+        sections.append(Section(INPUT, "Input as understood", tuple(_input(case, key_texts))))
     return Document(
         machine.name,
         (subtitle_of(machine),),
         (*_pictures(case, "", system)[:1], *first_page(case, cases, system, warnings)),
         tuple(section for section in sections if section.items),
         (provenance(machine),),
+        contents.prints_tables,
     )
 
 
@@ -138,6 +159,37 @@ def _report_of(command: Command, case: Case, system: str, step: float) -> Report
     functions = command.functions
     angles = stepped(step, functions.end(case), max(len(case.cylinders), 1))
     return for_people(functions.report(case, Frame(command.word, angles, None, system)))
+
+
+def _in_short(report: Report, command: str) -> Iterator[SectionItem]:
+    """Yield the answers of a report without what takes the most room, and which these are.
+
+    Left out are long tables of places, and parts all of whose key values the whole machine has, too, as it has those
+    of the worst throw.
+    """
+    of_whole = {key_value.id for key_value in report.whole.key_values} if report.whole else set()
+    parts = list[Part]()
+    left_out = list[str]()
+    for part in report.parts:
+        ids = {key_value.id for key_value in part.key_values}
+        if ids and ids <= of_whole:
+            left_out.append(str(part.name))
+        else:
+            parts.append(part)
+
+    report = report._replace(parts=tuple(parts))
+    long_tables = [
+        table for table in report.printed_tables if len(table.names) > _MOST_ROWS_IN_SHORT
+    ]
+    left_out += [f"{table.title} ({len(table.names)} rows)" for table in long_tables]
+
+    def without_long_tables(part: Part) -> Part:
+        tables = tuple(table for table in part.place_tables if table not in long_tables)
+        return part._replace(place_tables=tables)
+
+    yield ReportAnswers(report.changed(without_long_tables))
+    if left_out:
+        yield f"Not in the short report, but in --sections {command}: {'; '.join(left_out)}."
 
 
 def _left_out(reasons: Mapping[tuple[str, str], Sequence[str]]) -> Iterator[Grid]:
@@ -162,11 +214,11 @@ def _without_motion(report: Report, case: Case) -> Report:
     return report.changed(of_forces)
 
 
-def _input(case: Case, given: KeyTexts) -> Iterator[Grid]:
+def _input(case: Case, key_texts: KeyTexts) -> Iterator[Grid]:
     """Yield the keys of the file with their meanings, and the results of a check of the machine."""
-    if given:
-        places = places_of(given)
-        rows = tuple((path, value, meaning(path, places)) for path, value in given)
+    if key_texts:
+        keys_by_path = places_of(key_texts)
+        rows = tuple((path, value, meaning(path, keys_by_path)) for path, value in key_texts)
         yield Grid("Given", ("Key", "Value", "Meaning"), rows)
     for part in checked(case).shown_once:
         entries = [entry for entry in part.entries if entry.severity != "warning"]
@@ -184,7 +236,7 @@ def _energy(case: Case, system: str) -> Iterator[Grid]:
     for group in grouped(with_rows, itemgetter(1)):
         _, rows = group[0]
         yield Grid(
-            together([name for name, _ in group]), ("Per cycle", "Energy", "Unit"), rows, (1,)
+            joined_names([name for name, _ in group]), ("Per cycle", "Energy", "Unit"), rows, (1,)
         )
 
 
@@ -219,6 +271,7 @@ def _energy_terms(forces: CylinderForces) -> Iterator[tuple[str, float]]:
         yield f"Friction {joint}", -(friction.get(name) or 0.0)
     yield "Friction given as a force", -(friction.get("constant") or 0.0)
     yield "What the output works against", forces.resistance_work
+    yield "Load on the output", forces.load_work
 
 
 # two machines side by side
@@ -226,18 +279,30 @@ def _energy_terms(forces: CylinderForces) -> Iterator[tuple[str, float]]:
 
 @np.errstate(all="ignore")
 def side_by_side(
-    cases: Sequence[Case], given: Sequence[KeyTexts], system: str, progress: OnStep
+    cases: Sequence[Case],
+    key_texts: Sequence[KeyTexts],
+    system: str,
+    progress: OnStep,
+    contents: Contents = EVERYTHING,
 ) -> Document:
-    """Return the report on two machines: input that differs, key values with their differences, pictures in pairs."""
+    """Return the report on two machines: input that differs, key values with their differences, pictures in pairs.
+
+    contents: what is wanted of it.
+    """
     names = [case.machine.name for case in cases]
     if names[0] == names[1]:
         names = [f"{names[0]} (A)", f"{names[1]} (B)"]
-    input_items = tuple(_differing_input(cases, given, names))
-    sections = [Section("input", "What was given differently", input_items)]
+    sections = []
+    if contents.has(INPUT):
+        input_items = tuple(_differing_input(cases, key_texts, names))
+        sections.append(Section(INPUT, "What was given differently", input_items))
     for command in REPORTS:
         progress(command.title.lower())
-        items: list[SectionItem] = list(_pairs(cases, command.word, names, system))
-        items += _key_values(cases, names, command.word, system)
+        items = list[SectionItem]()
+        if contents.has_pictures(command.word):
+            items += _pairs(cases, command.word, names, system)
+        if contents.has_answers(command.word):
+            items += _key_values(cases, names, command.word, system)
         if items:
             sections.append(Section(command.word, command.title, tuple(items)))
     return Document(
@@ -250,14 +315,14 @@ def side_by_side(
 
 
 def _differing_input(
-    cases: Sequence[Case], given: Sequence[KeyTexts], names: Sequence[str]
+    cases: Sequence[Case], key_texts: Sequence[KeyTexts], names: Sequence[str]
 ) -> Iterator[SectionItem]:
     """Yield which machine is that of which file, and the keys with other values in both."""
     files = [case.machine.origin.name for case in cases if case.machine.origin]
     if len(files) == len(names):
         texts = [f"{name} is that of {file}" for name, file in zip(names, files)]
         yield "; ".join(texts) + "."
-    left, right = map(dict, given)
+    left, right = map(dict, key_texts)
     rows = []
     for key in dict.fromkeys((*left, *right)):
         if left.get(key) != right.get(key):
@@ -288,7 +353,9 @@ def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Ite
     yield from _pairs(cases, "", names, system)
 
     # the same facts of both, in the order of the first
-    ids = dict.fromkeys(id for case in cases for id in facts_of(case))
+    ids = dict[str, None]()
+    for case in cases:
+        ids |= dict.fromkeys(facts_of(case))
     titles: dict[Quantity, str] = {}
     numbers = []
     for case in cases:
@@ -328,7 +395,7 @@ def _key_values(
         compared.append(((pair[0] or pair[1]).name, _compared(numbers, system, meanings)))
     for group in grouped(compared, itemgetter(1)):
         _, rows = group[0]
-        title = together([name for name, _ in group]) if len(pairs) > 1 else "Key values"
+        title = joined_names([name for name, _ in group]) if len(pairs) > 1 else "Key values"
         if rows:
             yield Grid(title, _heads(names), rows, (1, 2, 4))
 
@@ -375,4 +442,6 @@ def _difference(first: float | None, second: float | None) -> str:
     percent = 100 * (second - first) / abs(first)
     if not percent:
         return "0 %"
-    return f"{percent:+.2f} %" if abs(percent) < 100 else f"{percent:+.0f} %"
+    if abs(percent) < 100:
+        return f"{percent:+.2f} %"
+    return f"{percent:+.0f} %"

@@ -1,6 +1,7 @@
 """The picture of `kurbel accuracy`: time over error."""
 
 from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -30,8 +31,10 @@ def accuracy_picture(report: Report) -> Picture:
         raise UsageError("--plot: nothing was compared, there is nothing to draw")
 
     # all panels have the same axes
-    every = np.concatenate([curve.y for drawn in curves.values() for curve in drawn])
-    low, high = every.min(), every.max()
+    all_curves = chain.from_iterable(curves.values())
+    all_times = np.concatenate([curve.y for curve in all_curves])
+    low = all_times.min()
+    high = all_times.max()
     rounding = Curve(Words(""), np.array([ROUNDING] * 2), np.array([low, high]), "faint")
     x = Axis(Words("error"), log=True, low=_LEAST, high=1.0, falling=True)
     y = Axis(Words("time"), unit="ms", log=True, low=low, high=high)

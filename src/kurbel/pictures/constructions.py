@@ -37,7 +37,7 @@ def construction(source: Source) -> Iterator[Panel]:
         elif lever and omega:
             panels["Velocity"] = _of_lever(source, lever, angle, omega)
         for title, panel in panels.items():
-            yield panel._replace(title=f"{title}, {_at(degrees)}")
+            yield panel._replace(title=f"{title}, {_at(degrees)}", angle=degrees)
 
 
 def polar_force(source: Source) -> Iterator[Panel]:
@@ -50,7 +50,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
         return
 
     def tip(state: State) -> ComplexArray:
-        return state.along_rod * np.exp(1j * np.radians(state.phi))
+        return state.along_stroke * np.exp(1j * np.radians(state.phi))
 
     symbol = Words("P + F_f") if source.having("F_friction") else source.words("P")
     panel = source.locus(tip, "P", symbol)
@@ -78,7 +78,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
             line=[(0j, end), (0j, cut)],
         )
         curves = (*panel.curves, *construction.curves)
-        yield construction._replace(curves=curves, title=_at(degrees))
+        yield construction._replace(curves=curves, title=_at(degrees), angle=degrees)
 
 
 def _at(degrees: float) -> str:
@@ -271,7 +271,7 @@ def _straight(mechanism: Mechanism, angle: CrankAngle) -> tuple[complex, complex
 
 def _panel(
     kind: str,
-    places: dict[str, complex],
+    named_points: dict[str, complex],
     values: dict[str, float],
     **lines: Sequence[Sequence[complex] | ComplexArray],
 ) -> Panel:
@@ -282,7 +282,7 @@ def _panel(
         for points in of_kind:
             curves.append(curve(line_kind, *points, look=look))
     marks = []
-    for name, point in places.items():
+    for name, point in named_points.items():
         marks.append(Mark(point.real, point.imag, PageFigure(Words(name), values.get(name))))
     axis = Axis(NO_NAME, kind)
     return Panel(axis, axis, tuple(curves), marks=tuple(marks), equal=True, plain=True)

@@ -18,7 +18,7 @@ from kurbel.solver.state import State
 
 if TYPE_CHECKING:
     from kurbel.machine.shaft_line import ShaftLine
-    from kurbel.solver.chapters.bearings import BearingColumns
+    from kurbel.solver.chapters.bearing import BearingColumns
     from kurbel.solver.flywheel import TurningState
 
 _MOST_NUMBERED = 24
@@ -151,14 +151,12 @@ def _driven_torque(state: State) -> Number:
 
 
 def driven_force(state: State) -> Number:
-    """Return the force in N of the pistons of a rod that do not drive, and of what a ram works against."""
-    force: Number = 0.0
-    if state.P_gas is not None:
-        P_driving = 0.0 if state.P_driving is None else state.P_driving
-        force = state.P_gas - P_driving
-    if state.P_ram is not None:
-        force = force + state.P_ram
-    return force
+    """Return the force in N of the pistons of a rod that do not drive, and of loads that the machine moves."""
+    force: Number = 0.0 if state.P_gas is None else state.P_gas
+    load = state.output_load
+    if load is not None:
+        force = force + load
+    return force - state.driving_force
 
 
 def _on_crank_1(source: Source, name: Words, torque: Array) -> CurveFormula:
@@ -187,17 +185,21 @@ def torque_orders(source: Source) -> Iterator[Panel]:
     is_drawn = source.results.orders <= _HIGHEST
     orders = source.results.orders[is_drawn]
     name = Words("|M_ν|", words="amplitude")
-    whole = np.abs(machine.whole)[is_drawn]
+    of_machine = np.abs(machine.whole)[is_drawn]
     parts = []
     for spectrum in (machine.gas, machine.inertia):
         if spectrum is not None:
             parts.append(np.abs(spectrum)[is_drawn])
     # a single part is all
     has_both = len(parts) == 2 and all(part.any() for part in parts)
-    if whole.any():
-        yield _bars(orders, [whole], name, "torque", "all" if has_both else "")
+    if of_machine.any():
+        yield _bars(orders, [of_machine], name, "torque", "all" if has_both else "")
     if has_both:
         yield _bars(orders, parts, name, "torque", "left: gas, weight, friction; right: inertia")
+
+
+def _has_bars(panel: Panel) -> bool:
+    return any(shade.high.any() for shade in panel.shades)
 
 
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
@@ -216,7 +218,7 @@ def unbalanced_orders(source: Source) -> Iterator[Panel]:
         panels.append(_bars(free.orders, radii, Words(name, words="radius"), kind, title))
 
     # what is balanced has nothing to show, unless all is
-    with_bars = [panel for panel in panels if any(shade.high.any() for shade in panel.shades)]
+    with_bars = [panel for panel in panels if _has_bars(panel)]
     yield from with_bars or panels[:1]
 
 
@@ -407,4 +409,6 @@ def _slenderness(panel: Panel) -> float:
     width = float(np.nanmax(locus.x) - np.nanmin(locus.x))
     height = float(np.nanmax(locus.y) - np.nanmin(locus.y))
     short, long = sorted((width, height))
-    return long / short if short else math.inf
+    if short:
+        return long / short
+    return math.inf

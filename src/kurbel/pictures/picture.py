@@ -47,7 +47,8 @@ class Axis(NamedTuple):
 class Curve(NamedTuple):
     """Points x, y (n,), one nan at a jump, more at a gap; of a moving curve (1 + m, n): at rest, then m in a loop.
 
-    kind: `line`, `faint` (to compare with, such as a mean), `dots` joined thinly, `beads`, `pole`; of mechanisms
+    kind: `line`, `faint` (to compare with, such as a mean), `cycles` (of which a line is the mean), `dots` joined
+    thinly, `beads`, `pole`; of mechanisms
     `guide`, `member`, `block`, the points `joint` and `fixed`, and `arrow`, a force from its first point to its second.
     look: its colour and stroke, where that is not its place among the lines of its panel.
     """
@@ -82,7 +83,9 @@ class Curve(NamedTuple):
 
     def at_moment(self, moment: int) -> "Curve":
         """Return the curve at one moment of its movement."""
-        return self if self.x.ndim == 1 else self._replace(x=self.x[moment], y=self.y[moment])
+        if self.x.ndim == 1:
+            return self
+        return self._replace(x=self.x[moment], y=self.y[moment])
 
 
 class PageFigure(NamedTuple):
@@ -214,7 +217,8 @@ class Panel(NamedTuple):
     """Two axes with what is on them; equal: both have one scale; plain: without axes.
 
     title: what distinguishes it from the other panels of its picture; bodies: parts of a machine, below the curves, in
-    the order in which they cover each other; footnote: what of them is to scale.
+    the order in which they cover each other; footnote: what of them is to scale. angle: the crank angle in degrees for
+    which it is drawn, where it was chosen.
     """
 
     x: Axis
@@ -228,6 +232,7 @@ class Panel(NamedTuple):
     bodies: tuple[Body, ...] = ()
     captions: tuple[Caption, ...] = ()
     footnote: str = ""
+    angle: float | None = None
 
     @property
     def places(self) -> tuple[list[Array], list[Array]]:
@@ -264,11 +269,29 @@ class Picture(NamedTuple):
     across: int = 1
     legend: tuple[tuple[Words, int], ...] = ()
 
+    def __repr__(self) -> str:
+        count = len(self.panels)
+        panels = "1 panel" if count == 1 else f"{count} panels"
+        return f"<kurbel picture {self.id}: {self.heading}, {panels}>"
+
     @property
     def heading(self) -> str:
         """The line above the picture."""
         title = f"{self.title}: {self.of}" if self.of else self.title
-        return f"{self.machine}. {title}" if self.machine else title
+        if not self.machine:
+            return title
+        return f"{self.machine}. {title}"
+
+    @property
+    def rows(self) -> "list[Picture]":
+        """Its rows of panels, each as a picture of its own, the last one with the legend."""
+        rows = []
+        for start in range(0, len(self.panels), self.across):
+            row = self.panels[start : start + self.across]
+            rows.append(self._replace(panels=row, legend=()))
+        if rows:
+            rows[-1] = rows[-1]._replace(legend=self.legend)
+        return rows
 
 
 # a long report
@@ -358,7 +381,8 @@ class Section(NamedTuple):
 class Document(NamedTuple):
     """A report on one machine, or on several next to one another.
 
-    subtitles: what kind of machine each is; summary: what is on the first page.
+    subtitles: what kind of machine each is; summary: what is on the first page; prints_tables: whether the tables over
+    the crank angle are printed, too.
     """
 
     title: str
@@ -366,3 +390,4 @@ class Document(NamedTuple):
     summary: tuple[SectionItem, ...]
     sections: tuple[Section, ...]
     provenance: tuple[Provenance, ...]
+    prints_tables: bool = False

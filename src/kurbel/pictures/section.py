@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -66,7 +67,8 @@ def mechanism(source: Source) -> Iterator[Panel]:
         trains = [Train(case.machine, forces, degrees, is_alone) for forces in cylinders]
         decimals = 6 if source.angles else 2
         title = f"φ = {round(float(degrees[0]), decimals):.9g}°"
-        yield _panel(case.machine, trains)._replace(title=title)
+        chosen_angle = None if source.angles is None else float(degrees[0])
+        yield _panel(case.machine, trains)._replace(title=title, angle=chosen_angle)
 
 
 def _has_no_sketch(forces: CylinderForces) -> bool:
@@ -138,7 +140,9 @@ def _drawn_angle(trains: Sequence[Train]) -> float:
         return 90.0
     is_upright = len(banks) > 1 or not first.crosshead or len(trains) > 2
     middle = sum(banks) / len(banks)
-    return 90.0 - middle if is_upright else 0.0
+    if not is_upright:
+        return 0.0
+    return 90.0 - middle
 
 
 def _row(trains: Sequence[Train]) -> dict[float, Train]:
@@ -150,7 +154,8 @@ def _row(trains: Sequence[Train]) -> dict[float, Train]:
     are_engines = all(train.is_engine and not train.has_slot for train in trains)
     if len(banks) == len(trains) or not are_engines:
         return {}
-    widest = max(barrel.bore for train in trains for barrel in train.barrels)
+    barrels = chain.from_iterable(train.barrels for train in trains)
+    widest = max(barrel.bore for barrel in barrels)
     of_file = {}
     for train in trains:
         if train.cylinder.axial_position is not None:
@@ -211,7 +216,9 @@ def _bounds(
     bodies: Sequence[Body], arrows: Sequence[Curve] = ()
 ) -> tuple[float, float, float, float]:
     """Return left, right, bottom and top of all positions of the bodies and arrows."""
-    lines = [line.ravel() for body in bodies for _, line in body.outlines()]
+    lines = []
+    for body in bodies:
+        lines += [line.ravel() for _, line in body.outlines()]
     lines += [(arrow.x + 1j * arrow.y).ravel() for arrow in arrows]
     points = np.concatenate(lines)
     return points.real.min(), points.real.max(), points.imag.min(), points.imag.max()
@@ -248,10 +255,13 @@ def _footnote(trains: Sequence[Train], row: dict[float, Train], wheel: str, behi
         shares.append(f"flywheel ({_WHEEL:g} cranks)")
     if behind and not row:
         hidden.append(f"{behind} of {len(trains)} cylinders, behind the others")
-    if any(piston.lever_ratio != 1 for train in trains for piston in train.cylinder.pistons):
+    pistons = chain.from_iterable(train.cylinder.pistons for train in trains)
+    if any(piston.lever_ratio != 1 for piston in pistons):
         hidden.append("pistons by a lever")
     note = f"To scale: {scale}. Drawn by shares: {', '.join((*shares, 'all else'))}."
-    return f"{note} Not drawn: {', '.join(hidden)}." if hidden else note
+    if not hidden:
+        return note
+    return f"{note} Not drawn: {', '.join(hidden)}."
 
 
 # the forces

@@ -149,7 +149,7 @@ class Train:
         # the ends of what is on the rod already
         inner, outer = near + self.head[0], far + self.head[1]
         barrels = list[Barrel]()
-        for piston in self.cylinder.pistons or (Piston(BORE * self.mechanism.stroke),):
+        for piston in self.results.drive.pistons or (Piston(BORE * self.mechanism.stroke),):
             if piston.lever_ratio != 1:
                 continue
             barrel = self._barrel(piston, inner, outer, is_first=not barrels)

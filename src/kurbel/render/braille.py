@@ -87,7 +87,9 @@ class Canvas:
         """Return what is in a cell: its text, or its dots."""
         if not dots:
             return text
-        return chr(0x2800 + dots) if self.braille else _LETTERS[role]
+        if self.braille:
+            return chr(0x2800 + dots)
+        return _LETTERS[role]
 
 
 def braille(picture: Picture, look: Look) -> Iterator[Line]:

@@ -35,7 +35,9 @@ def csv_cell(
     """
     if isinstance(value, str):
         text = look.data(value)
-        return f"'{text}" if text.startswith(_FORMULA) else text
+        if not text.startswith(_FORMULA):
+            return text
+        return f"'{text}"
     if isinstance(value, tuple):
         return " ".join(str(csv_cell(number, look)) for number in value)
     number = rounded(value, None if in_full else look.digits)

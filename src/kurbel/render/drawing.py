@@ -13,12 +13,32 @@ from kurbel.pictures.picture import Fact, Facts, Picture
 from kurbel.render import Look
 from kurbel.render.braille import braille
 from kurbel.render.output import look_at, opened, write_lines
+from kurbel.render.paper import A4, FIT, PAPERS, Sheet, sheets
 from kurbel.render.svg import poster_svg, svg_file
 from kurbel.render.text import BLANK, DIGITS, Line, subscripts
 
 _PAGE = """#set document(date: none)
 #set page(width: auto, height: auto, margin: 0pt)
 #image(bytes(sys.inputs.svg), format: "svg")"""
+_SHEETS = """
+#let sheets = json(bytes(sys.inputs.sheets))
+#set document(title: sheets.at(0).title, date: none)
+#set text(font: ("Libertinus Serif", "DejaVu Serif"), size: 10pt, fill: rgb("#1f2a33"))
+#for (number, sheet) in sheets.enumerate() {
+  set page(
+    paper: sys.inputs.paper, flipped: sheet.lies, margin: (x: 14mm, top: 14mm, bottom: 16mm),
+    footer: align(right, text(size: 8pt, fill: rgb("#66727c"))[#sheet.title #h(1em) #(number + 1)/#sheets.len()]),
+  )
+  grid(
+    rows: (1fr, auto), row-gutter: 3mm, columns: 100%,
+    layout(room => image(
+      bytes(sheet.svg), format: "svg", height: calc.min(room.height, room.width * sheet.tall),
+    )),
+    for (index, part) in sheet.text.enumerate() { if calc.odd(index) { sub(part) } else { part } },
+  )
+}
+"""
+"""Pages of a picture each, with its caption below it."""
 _DOTS_PER_INCH = 192.0
 
 
@@ -41,10 +61,12 @@ def check_file(file_name: str, option: str = "--output", poster: bool = False) -
     return kind
 
 
-def draw_output(pictures: Iterable[Picture], look: Look, file_name: str | None) -> None:
-    """Draw pictures to a file, or as characters to standard output where none is named."""
+def draw_output(
+    pictures: Iterable[Picture], look: Look, file_name: str | None, paper: str = A4
+) -> None:
+    """Draw pictures to a file, or as characters to standard output where none is named; paper: see `draw_file`."""
     if file_name is not None:
-        draw_file(list(pictures), look, file_name)
+        draw_file(list(pictures), look, file_name, paper)
         return
     look = look_at(None, look)
     write_lines(_below_one_another(pictures, look), look)
@@ -58,14 +80,40 @@ def _below_one_another(pictures: Iterable[Picture], look: Look) -> Iterator[Line
         yield from braille(picture, look)
 
 
-def draw_file(pictures: Sequence[Picture], look: Look, file_name: str) -> None:
-    """Draw pictures one below the other to a file. Raises UsageError where it cannot be written."""
+def draw_file(pictures: Sequence[Picture], look: Look, file_name: str, paper: str = A4) -> None:
+    """Draw pictures to a file, of a pdf on sheets of paper of this size, else one below the other.
+
+    Raises UsageError where it cannot be written.
+    """
     kind = check_file(file_name)
-    drawn = svg_file(pictures, look, paper=kind != "svg").encode()
-    if kind != "svg":
-        drawn = typeset(_PAGE, file_name, svg=drawn.decode())
+    if paper not in (*PAPERS, FIT):
+        raise UsageError(f"paper '{paper}': there are {', '.join(PAPERS)}, {FIT}")
+    if kind == "pdf" and paper != FIT:
+        drawn = typeset(
+            _SHEETS,
+            file_name,
+            paper=PAPERS[paper].word,
+            sheets=json.dumps(
+                [_words(sheet, look) for sheet in sheets(pictures, PAPERS[paper], look)]
+            ),
+        )
+    else:
+        drawn = svg_file(pictures, look, paper=kind != "svg").encode()
+        if kind != "svg":
+            drawn = typeset(_PAGE, file_name, svg=drawn.decode())
     with opened(file_name) as file:
         file.write(drawn)
+
+
+def _words(sheet: Sheet, look: Look) -> dict[str, object]:
+    """Return what a sheet has, for typst."""
+    return {
+        "title": look.text(sheet.picture.machine or sheet.picture.title),
+        "lies": sheet.lies,
+        "tall": sheet.tall,
+        "svg": sheet.svg,
+        "text": subscripts(look.sentence(sheet.picture.text)),
+    }
 
 
 def typeset(document: str, file_name: str, **inputs: str) -> bytes:

@@ -4,13 +4,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from kurbel.render import Look
-from kurbel.render.output import look_at, write_lines, write_out
+from kurbel.render.output import look_at, opened, write_lines, write_out
 from kurbel.render.text import Line, plain_lines
 from kurbel.tables.tables import Report
 
 
 def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
-    """Return the report as text that ends with a newline; the same report gives the same text every time."""
+    """Return the report as text that ends with a newline, the same every time; a workbook is no text."""
     return "".join(_pieces(report, look))
 
 
@@ -36,7 +36,9 @@ def _lines(
 ) -> Iterator[Line]:
     from kurbel.render.page import fitting, page_lines
 
-    return page_lines(report, look) if first is None else fitting(report, look, first, named)
+    if first is None:
+        return page_lines(report, look)
+    return fitting(report, look, first, named)
 
 
 class Output(NamedTuple):
@@ -56,6 +58,12 @@ class Output(NamedTuple):
         On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text,
         folded only to a given width.
         """
+        if self.look.format == "xlsx":
+            from kurbel.render.workbook import report_sheets, write_workbook
+
+            with opened(self.file_name) as file:
+                write_workbook(report_sheets(report, self.look), file, self.look)
+            return
         look = look_at(self.file_name, self.look)
         if look.format == "table" and self.file_name in (None, "-"):
             write_lines(_lines(report, look, first, named), look)

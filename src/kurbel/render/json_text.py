@@ -84,7 +84,9 @@ def _made_from(provenance: Provenance | None) -> dict[str, object]:
 
 def sha256_of(file: InputFile) -> str | None:
     """Return the SHA-256 of a file that was read, None if it is gone."""
-    return None if file.content is None else sha256(file.content).hexdigest()
+    if file.content is None:
+        return None
+    return sha256(file.content).hexdigest()
 
 
 def _named(part: Part, ratio: bool, look: Look) -> Content:
@@ -232,8 +234,8 @@ def findings_junit(
     sentence after its key, and none occurs twice. Elements and attributes are those of the schema of Jenkins.
     """
     root = ElementTree.Element("testsuites", name="kurbel")
-    for file, found in checks:
-        findings = [finding for finding in found if not _is_left_out(finding)]
+    for file, of_file in checks:
+        findings = [finding for finding in of_file if not _is_left_out(finding)]
         file_name = look.data(file)
         failures = sum(finding["severity"] == "error" for finding in findings)
         attributes = {

@@ -4,6 +4,7 @@ A writer has no knowledge of reports. Its methods `text`, `sentence`, `symbol`, 
 escape it; all others take escaped text. LaTeX is to be \input into a document with \usepackage{booktabs, longtable}.
 """
 
+import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -11,9 +12,10 @@ from html import escape
 
 from kurbel.render import Look
 from kurbel.render.style import page_css
-from kurbel.render.text import measures, subscripts
+from kurbel.render.text import measures, subscripts, width
 from kurbel.render.text_tables import (
     MARK,
+    TextColumn,
     TextTable,
     headed,
     key_value_table,
@@ -26,19 +28,24 @@ from kurbel.tables.tables import Report, for_people, notes_for_people
 
 _ON_PAPER = 9
 """Columns of numbers, apart from that of the angle, that fit on A4; further ones go into another table."""
+_PAGE, _GAP = 112, 2
+"""Characters of a line that fit on a page of HTML on paper, and those between two columns."""
 
 
 class Writer(ABC):
     """A writer of one format: its elements are templates for escaped text.
 
-    across: the most columns of numbers in a table, None for any number; parting: what is between the cells of a line.
+    parting: what is between the cells of a line.
     """
 
-    across: int | None = _ON_PAPER
     title = paragraph = strong = list_head = item = list_end = line = parting = table_end = ""
 
     def __init__(self, look: Look) -> None:
         self.look = look
+
+    def pages_across(self, table: TextTable) -> int:
+        """Return into how many parts a table is divided by its columns, so that each fits on a page."""
+        return math.ceil(len(table.columns[table.heads :]) / _ON_PAPER)
 
     @abstractmethod
     def text(self, plain: str) -> str:
@@ -72,9 +79,12 @@ class Writer(ABC):
 class Markdown(Writer):
     """Markdown: one line for each row, a blank line between elements."""
 
-    across = None
     title, paragraph, strong = "## {}\n", "\n{}\n", "**{}**"
     list_head, item, line, parting = "\n### {}\n\n", "- {}\n", "| {} |\n", " | "
+
+    def pages_across(self, table: TextTable) -> int:
+        """Return 1: a line has any length."""
+        return 1
 
     def text(self, plain: str) -> str:
         return re.sub(r"([\\|*_<>`\[\]])", r"\\\1", plain)
@@ -93,6 +103,13 @@ class Html(Writer):
     title, paragraph, strong = "<h1>{}</h1>\n", "<p>{}</p>\n", "<b>{}</b>"
     list_head, item, list_end = "<h2>{}</h2>\n<ul>\n", "<li>{}</li>\n", "</ul>\n"
     table_end = "</tbody></table></div>\n"
+
+    def pages_across(self, table: TextTable) -> int:
+        """Return into how many parts a table is divided, by the widths of its columns; at most those of other formats."""
+        names, columns = table.columns[: table.heads], table.columns[table.heads :]
+        room = _PAGE - sum(map(_room_of, names))
+        by_width = math.ceil(sum(map(_room_of, columns)) / max(room, 1))
+        return min(by_width, super().pages_across(table))
 
     def text(self, plain: str) -> str:
         return escape(plain)
@@ -115,8 +132,9 @@ class Html(Writer):
             cells.append(f'<th scope="col"{_right(not column.words)}>{symbol}{below}</th>')
         titled = f"<caption>{caption}</caption>" if caption else ""
         label = caption or "values over the crank angle"
+        room = "wide narrow" if _is_narrow(table) else "wide"
         return (
-            f'<div class="wide" tabindex="0" role="region" aria-label="{label}">'
+            f'<div class="{room}" tabindex="0" role="region" aria-label="{label}">'
             f"<table>{titled}\n"
             f"<thead><tr>{''.join(cells)}</tr></thead>\n<tbody>\n"
         )
@@ -134,6 +152,17 @@ class Html(Writer):
             shown.append(f'<th scope="row"{side}>{name}</th>')
         verdict = f' class="{table.verdicts[number]}"' if table.verdicts else ""
         return f"<tr{verdict}>{''.join(shown)}</tr>\n"
+
+
+def _is_narrow(table: TextTable) -> bool:
+    """Return whether a table takes less than half of a page of paper, so that two are next to each other."""
+    return sum(map(_room_of, table.columns)) <= _PAGE // 2
+
+
+def _room_of(column: TextColumn) -> int:
+    """Return the characters of a line that a column takes, with the gap to the next one."""
+    texts = (column.symbol, column.unit, *column.cells)
+    return max(width(text.strip()) for text in texts) + _GAP
 
 
 def _right(number: bool) -> str:
@@ -214,7 +243,9 @@ def _in_text(letter: str) -> str:
     if letter in _SPECIAL:
         return _SPECIAL[letter]
     is_formula = len(letter) > 1 or letter in _MATH
-    return f"${_formula(letter)}$" if is_formula else letter
+    if not is_formula:
+        return letter
+    return f"${_formula(letter)}$"
 
 
 def _formula(letter: str) -> str:
@@ -224,7 +255,9 @@ def _formula(letter: str) -> str:
     if base in _MATH:
         command = _MATH[base]
         written = command if command[0] in "-^_" else f"\\{command}"
-    return f"\\{_DOTS[dots]}{{{written}}}" if dots else written
+    if not dots:
+        return written
+    return f"\\{_DOTS[dots]}{{{written}}}"
 
 
 # the report, element by element
@@ -237,7 +270,7 @@ def document(report: Report, out: Writer) -> Iterator[str]:
     for text in report.head:
         yield out.paragraph.format(out.prose(text))
     yield from written(over_angle(report, out), out)
-    yield from written(of_places(report, out), out)
+    yield from written(place_tables_of(report, out), out)
     for note in notes_for_people(report):
         yield out.paragraph.format(out.prose(note))
     for part in report.all_parts:
@@ -271,7 +304,7 @@ def over_angle(report: Report, out: Writer) -> Iterator[TextTable]:
             yield from _parts_of(TextTable(name, [*heads, *columns], len(heads)), out)
 
 
-def of_places(report: Report, out: Writer) -> Iterator[TextTable]:
+def place_tables_of(report: Report, out: Writer) -> Iterator[TextTable]:
     """Yield the tables of places, in parts that are not too wide."""
     for printed_table in report.printed_tables:
         yield from _parts_of(place_table(printed_table, out.look), out)
@@ -280,7 +313,7 @@ def of_places(report: Report, out: Writer) -> Iterator[TextTable]:
 def _parts_of(table: TextTable, out: Writer) -> Iterator[TextTable]:
     """Yield the parts of a table, each with the columns that name the rows."""
     names, columns = table.columns[: table.heads], table.columns[table.heads :]
-    most = out.across or max(len(columns), 1)
+    most = max(math.ceil(len(columns) / max(out.pages_across(table), 1)), 1)
     for start in range(0, max(len(columns), 1), most):
         yield table._replace(columns=[*names, *columns[start : start + most]])
 

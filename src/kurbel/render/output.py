@@ -90,7 +90,9 @@ def terminal_size(fallback: tuple[int, int] = (80, 24)) -> tuple[int, int]:
 def _number_of(variable: str) -> int:
     """Return the number that a variable of the environment has, 0 without one."""
     text = os.environ.get(variable, "")
-    return int(text) if text.isdecimal() else 0
+    if not text.isdecimal():
+        return 0
+    return int(text)
 
 
 def _stdout() -> TextIO:
@@ -221,10 +223,10 @@ def whole_file(file_name: str) -> str:
     return os.path.realpath(file_name)  # a link stays one
 
 
-def _is_same(one: os.stat_result, other: str | int) -> bool:
+def _is_same(file: os.stat_result, other: str | int) -> bool:
     """Return whether a file is the one with this name or descriptor; /dev/stdout, for one, has another name."""
     with suppress(OSError, ValueError):
-        return os.path.samestat(one, os.stat(other))
+        return os.path.samestat(file, os.stat(other))
     return False
 
 

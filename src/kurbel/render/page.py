@@ -244,7 +244,8 @@ def _book(
     rows = list(heads)
     for _, columns in bands:
         rows += columns
-    cell = max((width(text) for row in rows for text in row.cells), default=0) + _GAP
+    texts = chain.from_iterable(row.cells for row in rows)
+    cell = max(map(width, texts), default=0) + _GAP
     side = _Side(
         _with_gap(name for name, _ in bands if named_beside),
         _with_gap(row.symbol for row in rows),
@@ -280,7 +281,9 @@ def _book(
 def _with_gap(texts: Iterable[str]) -> int:
     """Return the width of a column of texts with its gap; without a text it takes no room."""
     wide = max(map(width, texts), default=0)
-    return wide + _GAP if wide else 0
+    if not wide:
+        return 0
+    return wide + _GAP
 
 
 class _Side(NamedTuple):

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 
 from kurbel import __version__
+from kurbel.page.contents import TABLES
 from kurbel.pictures.picture import (
     Document,
     Fact,
@@ -19,9 +20,9 @@ from kurbel.pictures.picture import (
 )
 from kurbel.render import Look
 from kurbel.render.json_text import sha256_of
-from kurbel.render.markup import Html, html_page, listed, of_places, over_angle, written
+from kurbel.render.markup import Html, html_page, listed, over_angle, place_tables_of, written
 from kurbel.render.style import LONG_REPORT, MOVING, PAIRS, PICTURE, PICTURE_COLOURS, page_css
-from kurbel.render.svg import svg
+from kurbel.render.svg import svg_rows
 from kurbel.render.text import DIGITS
 from kurbel.render.text_tables import TextColumn, TextTable, key_value_table, part_name, place_table
 from kurbel.tables.sources import legend, texts_of
@@ -29,13 +30,22 @@ from kurbel.tables.tables import PlaceTable, notes_for_people
 
 _CLOSE = 5
 """Digits of a value next to its bound."""
+_BOX = """\
+<input type="checkbox" id="print-tables"{}>
+<label for="print-tables">Print these tables, too</label>
+<p class="unprinted">These tables are on the page as it is on a screen, where a box selects them for print; \
+<code>kurbel report --sections all</code> prints them, too.</p>
+"""
+_PRINTED, _UNPRINTED = _BOX.format(" checked"), _BOX.format("")
+"""What decides whether the tables over the crank angle are printed; what follows it is hidden on paper."""
 
 
-def report_page(long: Document, look: Look, date: str) -> Iterator[str]:
-    """Yield the page of a long report; date: as it is shown."""
+def report_page(long: Document, look: Look, paper: str, date: str) -> Iterator[str]:
+    """Yield the page of a long report; paper: the word of a sheet in CSS; date: as it is shown."""
     out = Html(look._replace(format="html"))
     pairs = PAIRS if len(long.provenance) > 1 else ""
-    style = page_css(LONG_REPORT, pairs, PICTURE, PICTURE_COLOURS, MOVING)
+    sheet = f"@page{{size:{paper}}}\n"
+    style = page_css(LONG_REPORT, pairs, PICTURE, PICTURE_COLOURS, MOVING, sheet)
     yield from html_page(out.look.text(long.title), _parts(long, out, date), style)
 
 
@@ -53,6 +63,8 @@ def _parts(long: Document, out: Html, date: str) -> Iterator[str]:
     yield "</ul>\n</nav>\n"
     for section in long.sections:
         yield f'<section id="{section.id}">\n<h2>{out.words(section.title)}</h2>\n'
+        if section.id == TABLES:
+            yield _PRINTED if long.prints_tables else _UNPRINTED
         for item in section.items:
             yield from _item(item, out)
         yield "</section>\n"
@@ -99,7 +111,7 @@ def _item(item: SectionItem, out: Html) -> Iterator[str]:
             if part.key_values:
                 name = part_name(report, part, out.look) or "Key values"
                 yield from written([key_value_table(name, part.key_values, out.look)], out)
-        yield from written(of_places(report, out), out)
+        yield from written(place_tables_of(report, out), out)
         yield from (f"<p>{out.prose(note)}</p>\n" for note in notes_for_people(report))
     elif isinstance(item, OverAngle):
         yield f"<h3>{out.words(item.title)}</h3>\n"
@@ -134,7 +146,8 @@ def _fact(fact: Fact, out: Html) -> str:
 
 def _figure(picture: Picture, out: Html) -> str:
     label = out.words(picture.heading)
-    drawn = f'<div class="wide" tabindex="0" role="region" aria-label="{label}">{svg(picture, out.look)}</div>'
+    rows = "".join(svg_rows(picture, out.look))
+    drawn = f'<div class="wide" tabindex="0" role="region" aria-label="{label}">{rows}</div>'
     caption = f"<b>{label}.</b> {out.prose(picture.text)}"
     return f"<figure>\n<figcaption>{caption}</figcaption>\n{drawn}\n</figure>\n"
 
@@ -161,7 +174,9 @@ def _shown(cell: FactValue, head: str, look: Look) -> str:
         return f"{value} {_powers(unit)}".strip()
     if head == "Unit":
         return look.unit(cell)
-    return _powers(look.number(cell)) if head == "Bound" else look.sentence(cell)
+    if head == "Bound":
+        return _powers(look.number(cell))
+    return look.sentence(cell)
 
 
 def _powers(unit: str) -> str:

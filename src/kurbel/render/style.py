@@ -49,10 +49,14 @@ thead th{border-bottom:1px solid var(--ink);vertical-align:bottom}
 tbody tr>*{border-bottom:1px solid var(--rule)}tbody th{font-weight:400}td.l{max-width:14rem}
 @media screen and (max-width:40rem){.wide td:not(.r):last-child{min-width:12rem}}
 small{color:var(--faint)}.good{color:var(--good)}.bad{color:var(--bad);font-weight:600}
-@page{margin:14mm}
-@media print{body{font-size:9pt}main{max-width:none;padding:0}.wide{overflow:visible}
-table{font-size:7.5pt}th,td{padding:.05rem .3rem}
-tr,figure,h2,h3,h4,caption{break-inside:avoid}h2,h3,h4,caption{break-after:avoid}thead{display:table-header-group}}
+@page{margin:12mm 14mm}
+@media print{body{font-size:9pt}main{max-width:none;padding:0}.wide{overflow:visible;margin:.3rem 0}
+p{margin:.4rem 0}table{font-size:7.2pt;line-height:1.2}th,td{padding:.04rem .3rem}
+.wide,h2,h3,h4,p,ul,figure,section{clear:both}
+.narrow{break-inside:avoid;float:left;clear:none;min-width:5cm;margin-right:.7cm}.narrow th,.narrow td{padding:.04rem .2rem}
+.narrow table{min-width:100%;font-size:7pt}
+tr,h2,h3,h4,caption,figcaption,svg{break-inside:avoid}h2,h3,h4,caption,figcaption{break-after:avoid}
+thead,tbody tr:first-child{break-after:avoid}thead{display:table-header-group}}
 """
 LONG_REPORT = """\
 main{max-width:61rem;padding:1.5rem 1rem}
@@ -78,9 +82,15 @@ footer{border-top:2px solid var(--ink);margin-top:2.6rem}
 figure{margin:1.2rem 0}
 figure svg{width:100%;min-width:30rem;height:auto;display:block}
 #summary figure svg{min-width:0}
-@media print{main{padding:0}figure svg{min-width:0;max-height:23cm}#summary figure svg{max-height:7.5cm}
-nav{display:none}
-h1{font-size:18pt}h2{margin-top:1.2rem}#summary{break-after:page}
+.unprinted{display:none}
+@media print{main{padding:0}figure{margin:.5rem 0}figure svg{min-width:0;max-height:8.5cm}
+#summary{border:0;padding:0}#summary figure svg{max-height:6cm}
+.facts{grid-template-columns:repeat(6,1fr);gap:.3rem;margin:.4rem 0}.facts p{padding:.2rem .5rem;line-height:1.2}.facts b{font-size:1.1rem}
+.facts small{font-size:.7rem}
+nav{display:none}#input th[scope=row]{white-space:nowrap}#input wbr{display:none}
+h1{font-size:18pt}h2{margin:.8rem 0 .4rem}h3{margin-top:.8rem}
+#print-tables,#print-tables+label,#print-tables:not(:checked)~*{display:none}
+#print-tables:not(:checked)~.unprinted{display:block}
 a{color:inherit;text-decoration:none}}
 """
 PAIRS = """\
@@ -91,7 +101,8 @@ PAIRS = """\
 
 PICTURE = """\
 text{font-family:system-ui,"DejaVu Sans",sans-serif;font-size:10px}.h{font-size:13px;font-weight:600}
-.m{stroke-width:4;stroke-linecap:round}.f,.g,.x{stroke-width:1}.o,.b,.i{stroke-width:1.2}.f,.g,.x,.m{fill:none}
+.m{stroke-width:4;stroke-linecap:round}.f,.g,.x{stroke-width:1}.o,.b,.i{stroke-width:1.2}.f,.g,.q,.x,.m{fill:none}
+.q{stroke-width:.5;stroke-opacity:.5}
 .halo{paint-order:stroke;stroke-width:3px;stroke-linejoin:round}
 .k0,.k1,.k2,.k3,.k4,.k5{fill:none;stroke-width:1.6}.j0,.j1,.j2,.j3,.j4,.j5{fill:none;stroke-width:1.2}
 .k1{stroke-dasharray:8 3}.k2{stroke-dasharray:2 2.5}.k3{stroke-dasharray:9 3 2 3}
@@ -102,7 +113,7 @@ text{font-family:system-ui,"DejaVu Sans",sans-serif;font-size:10px}.h{font-size:
 @media(max-width:520px){.mark,.force{font-size:19px}}
 """
 PICTURE_COLOURS = """\
-.s{background:var(--paper)}text{fill:var(--ink)}.halo{stroke:var(--paper)}.f{stroke:var(--faint)}.g{stroke:var(--grid)}
+.s{background:var(--paper)}text{fill:var(--ink)}.halo{stroke:var(--paper)}.f,.q{stroke:var(--faint)}.g{stroke:var(--grid)}
 .x,.m,.o,.b,.i{stroke:var(--ink)}.o{fill:var(--paper)}.b{fill:var(--grid)}.i{fill:var(--ink)}
 .p{fill:var(--gain)}.n{fill:var(--loss)}
 .k0,.j0{stroke:var(--line0)}.k1,.j1{stroke:var(--line1)}.k2,.j2{stroke:var(--line2)}

@@ -28,6 +28,8 @@ PAPER_SIZES = Medium(
     letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=40.0, shortest=110.0, tallest=460.0
 )
 WIDTH = 720.0
+_MARGIN = 8.0
+"""Around the pictures of a file."""
 _TALL, _SHORT = 250.0, 170.0
 """Height of a panel among at most two and of one among several."""
 _GUTTER = 14.0
@@ -59,17 +61,30 @@ def svg_file(pictures: Iterable[Picture], look: Look, paper: bool = False) -> st
     """Return a file with pictures one below the other; paper: as what can neither be dark nor move."""
     height, parts, texts = 0.0, "", []
     for picture in pictures:
-        tall, items = _drawn(picture, look, paper)
+        tall, items = _drawn(picture, look, paper, panel_height(picture))
         texts.append(picture_text(picture, look))
         parts += f'<g transform="translate(0 {height:g})">\n{items}</g>\n'
         height += tall
-    return _svg(parts, WIDTH, height, 8.0, " ".join(texts), picture_css(paper))
+    return _svg(parts, WIDTH, height, _MARGIN, " ".join(texts), picture_css(paper))
 
 
-def svg(picture: Picture, look: Look) -> str:
-    """Return a picture as a part of a page that has the style sheet, and its heading."""
-    tall, items = _drawn(picture, look, False, headed=False)
-    return _svg(items, WIDTH, tall, 1.0, picture_text(picture, look))
+def svg_rows(picture: Picture, look: Look) -> Iterator[str]:
+    """Yield the rows of a picture as parts of a page that has the style sheet, and its heading.
+
+    Between two of them a page of paper may end.
+    """
+    height = panel_height(picture)
+    for row in picture.rows:
+        tall, items = _drawn(row, look, False, height, headed=False)
+        yield _svg(items, WIDTH, tall, 1.0, picture_text(row, look))
+
+
+def sheet_svg(picture: Picture, look: Look, height: float, medium: Medium) -> tuple[float, str]:
+    """Return height over width of a picture as it is on paper, and its file; height: of its panels."""
+    tall, items = _drawn(picture, look, True, height, medium=medium)
+    title = picture_text(picture, look)
+    drawn = _svg(items, WIDTH, tall, _MARGIN, title, picture_css(paper=True))
+    return float(tall + 2 * _MARGIN) / (WIDTH + 2 * _MARGIN), drawn
 
 
 def poster_svg(panel: Panel, look: Look, wide: bool) -> str:
@@ -93,8 +108,23 @@ def _svg(items: str, wide: float, tall: float, margin: float, title: str, style:
     return f'{head} class="s" viewBox="{box}" role="img">\n<title>{escape(title)}</title>\n{items}</svg>\n'
 
 
-def _drawn(picture: Picture, look: Look, paper: bool, headed: bool = True) -> tuple[float, str]:
-    """Return the height of a picture and its items; headed: with its heading."""
+def panel_height(picture: Picture) -> float:
+    """Return the height of the panels of a picture, without what is around them."""
+    return _TALL if len(picture.panels) < 3 else _SHORT
+
+
+def _drawn(
+    picture: Picture,
+    look: Look,
+    paper: bool,
+    panel_height: float,
+    headed: bool = True,
+    medium: Medium = PAPER_SIZES,
+) -> tuple[float, str]:
+    """Return the height of a picture and its items; headed: with its heading.
+
+    panel_height: that of its panels, but of those whose axes have one scale.
+    """
     heading = folded(look.text(picture.heading), int(WIDTH / _BOLD)) if headed else []
     items = ""
     for number, text in enumerate(heading):
@@ -103,7 +133,6 @@ def _drawn(picture: Picture, look: Look, paper: bool, headed: bool = True) -> tu
 
     # the panels, row by row
     top = bottom
-    tall = _TALL if len(picture.panels) < 3 else _SHORT
     column_width = (WIDTH + _GUTTER) / picture.across - _GUTTER
     last = len(picture.panels) - 1
     for number, panel in enumerate(picture.panels):
@@ -114,7 +143,9 @@ def _drawn(picture: Picture, look: Look, paper: bool, headed: bool = True) -> tu
             top = bottom + 4
         panel_width = WIDTH if is_alone_in_its_row else column_width
         left = column * (column_width + _GUTTER)
-        panel_items, height = _placed(panel, look, paper, left, top, panel_width, tall)
+        panel_items, height = _placed(
+            panel, look, paper, left, top, panel_width, panel_height, medium
+        )
         items += panel_items
         bottom = max(bottom, top + height)
 
@@ -132,13 +163,20 @@ def _drawn(picture: Picture, look: Look, paper: bool, headed: bool = True) -> tu
 
 
 def _placed(
-    panel: Panel, look: Look, paper: bool, left: float, top: float, wide: float, tall: float
+    panel: Panel,
+    look: Look,
+    paper: bool,
+    left: float,
+    top: float,
+    wide: float,
+    tall: float,
+    medium: Medium,
 ) -> tuple[str, float]:
     """Return a panel at its place in the picture, and the height that it takes with what is around it."""
     room_left, room_right, room_above, room_below = 48.0, 12.0, 20.0, 18.0
     if panel.plain:
         room_left, room_right, room_above, room_below = 0.0, 0.0, 18.0, 8.0
-    frame = PanelFrame(panel, look, PAPER_SIZES, wide - room_left - room_right, tall)
+    frame = PanelFrame(panel, look, medium, wide - room_left - room_right, tall)
     legend = [] if panel.plain else _legend(frame, room_left)
     room_above += 14 * len(legend)
     room_below += 12 * len(frame.below)
@@ -380,7 +418,8 @@ def _curve(frame: PanelFrame, curve: Curve, number: int) -> str:
         for piece in pieces:
             dots += "".join(_dot(point, figure) for point in piece)
         return _shape(f"j{number}", lines) + _shape(f"c{number}", dots)
-    return _shape({"member": "m", "block": "b"}.get(curve.kind, "f"), lines)
+    look = {"member": "m", "block": "b", "cycles": "q"}.get(curve.kind, "f")
+    return _shape(look, lines)
 
 
 def _arrow(frame: PanelFrame, moments: Sequence[Curve]) -> str:

@@ -1,6 +1,6 @@
-"""The rows of a sweep as csv, json lines, Markdown, a table or Parquet, and where they go.
+"""The rows of a sweep as csv, json lines, Markdown, a table or a workbook, and where they go.
 
-A table and Markdown are written when all rows are there. Of csv and JSON whole lines are written, the first ones at
+A table, Markdown and a workbook are written when all rows are there. Of csv and JSON whole lines are written, the first ones at
 once, to a file FILE.part that becomes FILE when it has all: the old file stays until then, and an interrupted run
 leaves what it has, which `--resume` continues.
 """
@@ -13,7 +13,7 @@ import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain, islice, zip_longest
-from typing import Any, BinaryIO, NamedTuple, NoReturn
+from typing import BinaryIO, NamedTuple, NoReturn
 
 from kurbel.designs.answers import Cell, Design
 from kurbel.designs.chosen import RowCondition, Unit
@@ -29,8 +29,6 @@ from kurbel.render.text_tables import TextColumn, TextTable
 
 _AT_LEAST_EVERY = 0.5
 """Seconds after which lines that are ready are written."""
-_IN_A_GROUP = 10_000
-"""Rows of a group of a Parquet file."""
 _COMPARED_AT_ONCE = 100
 """Rows of a file whose inputs are compared together."""
 _NUMBER = re.compile(rb'(?:\{"row": )?(\d+)\b')
@@ -45,13 +43,12 @@ _JSON_OF_WORDS = {"": None, "yes": True, "no": False}
 class Titles(NamedTuple):
     """Names of the columns with their units, in order, and the heads of the texts after the values.
 
-    row: the head of the first column; types: see `Sweep.types`, for Parquet only.
+    row: the head of the first column.
     """
 
     names: tuple[tuple[str, str], ...]
     last: tuple[str, ...] = ()
     row: str = "row"
-    types: Sequence[str] = ()
 
     @property
     def heads(self) -> list[str]:
@@ -60,6 +57,11 @@ class Titles(NamedTuple):
         for name, unit in self.names:
             heads.append(f"{name}_{unit.replace(' ', '')}" if unit else name)
         return [*heads, *self.last]
+
+    @property
+    def with_units(self) -> list[tuple[str, str]]:
+        """All names, each with its unit."""
+        return [(self.row, ""), *self.names, *((name, "") for name in self.last)]
 
     def values(self, row: Design) -> list[Cell]:
         """Return the values of a row under the heads."""
@@ -87,7 +89,7 @@ def head_and_row_lines(titles: Titles, look: Look) -> tuple[str, Callable[[Desig
 
 def _for_people(titles: Titles, look: Look, rows: Sequence[Design]) -> Iterator[str]:
     """Return rows as a table of text or of Markdown."""
-    heads = [(titles.row, ""), *titles.names, *((name, "") for name in titles.last)]
+    heads = titles.with_units
     cells_of_columns: list[list[str]] = [[] for _ in heads]
     for row in rows:
         for column_cells, value in zip(cells_of_columns, titles.values(row)):
@@ -106,7 +108,9 @@ def _for_people(titles: Titles, look: Look, rows: Sequence[Design]) -> Iterator[
 def _cell(value: Cell, look: Look) -> str:
     """Return a value as people read it, its number to four digits."""
     if isinstance(value, str):
-        return look.unit(value) if isinstance(value, Unit) else look.text(value)
+        if isinstance(value, Unit):
+            return look.unit(value)
+        return look.text(value)
     if isinstance(value, tuple):
         return " ".join(_cell(number, look) for number in value)
     if value is None:
@@ -142,6 +146,13 @@ def write_rows(
     headed: csv with its head; early: gets a sentence about what an early end leaves.
     """
     look = look_at(file_name, look)
+    if look.format == "xlsx":
+        from kurbel.render.workbook import sheet_of_rows, write_workbook
+
+        sheet = sheet_of_rows(titles.with_units, map(titles.values, rows), look)
+        with opened(file_name) as file:
+            write_workbook([sheet], file, look)
+        return
     if look.format in ("table", "markdown"):
         write_out(_for_people(titles, look, list(rows)), file_name, look.encoding)
         return
@@ -161,28 +172,23 @@ def write_rows(
         first_row = list(islice(counted_rows, 1))
         all_rows = chain(first_row, counted_rows)
         with opened(file_name, resumed=written_before.size) as file:
-            if look.format == "parquet":
-                _write_parquet(file, titles, all_rows)
-            else:
-                head_line, row_line = head_and_row_lines(titles, look)
-                heads = [head_line] if headed else []
-                _write_lines(file, chain(heads, map(row_line, all_rows)), look.encoding)
+            head_line, row_line = head_and_row_lines(titles, look)
+            heads = [head_line] if headed else []
+            _write_lines(file, chain(heads, map(row_line, all_rows)), look.encoding)
     except BaseException:
         if count:
-            _report_what_is_left(count, file_name, look, early)
+            _report_what_is_left(count, file_name, early)
         raise
 
 
-def _report_what_is_left(
-    count: int, file_name: str | None, look: Look, early: Callable[[str], None]
-) -> None:
+def _report_what_is_left(count: int, file_name: str | None, early: Callable[[str], None]) -> None:
     """Say how many rows an early end leaves, and where."""
     rows = "1 row" if count == 1 else f"{count} rows"
     if file_name is None or file_name == "-":
         early(f"{rows} written")
         return
     part = _part_of(file_name)
-    if look.format != "parquet" and os.path.isfile(part):
+    if os.path.isfile(part):
         early(f"{part} holds {rows}")
 
 
@@ -200,38 +206,6 @@ def _write_lines(file: BinaryIO, lines: Iterable[str], encoding: str) -> None:
         if time.monotonic() >= due:
             file.flush()
             due = time.monotonic() + _AT_LEAST_EVERY
-
-
-def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design]) -> None:
-    """Write rows as Parquet. Raises UsageError where pyarrow is missing."""
-    try:
-        import pyarrow.parquet
-    except ImportError:
-        raise UsageError("Parquet needs pyarrow: pip install pyarrow") from None
-    stored_types = {
-        "number": pyarrow.float64(),
-        "text": pyarrow.string(),
-        "list": pyarrow.list_(pyarrow.float64()),
-    }
-    types = [pyarrow.int64()]
-    types += [stored_types[type] for type in titles.types]
-    types += [pyarrow.string() for _ in titles.last]
-    schema = pyarrow.schema(zip(titles.heads, types))
-    with pyarrow.parquet.ParquetWriter(file, schema) as writer:
-        while group := list(islice(rows, _IN_A_GROUP)):
-            columns = zip(*map(titles.values, group))
-            arrays = [_parquet_array(column, type) for column, type in zip(columns, types)]
-            writer.write_table(pyarrow.table(arrays, schema=schema))
-
-
-def _parquet_array(column: tuple[Cell, ...], type: Any) -> Any:
-    """Return a column as an array of Parquet; of a column of words some may be read as numbers."""
-    import pyarrow
-
-    cells: list[Any] = list(column)
-    if type == "string":
-        cells = [None if cell is None else str(cell) for cell in column]
-    return pyarrow.array(cells, type)
 
 
 # the rows that an interrupted sweep left

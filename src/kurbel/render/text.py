@@ -9,7 +9,7 @@ from typing import NamedTuple
 from unicodedata import combining, east_asian_width, normalize
 
 from kurbel.declared.unit_systems import SYSTEMS
-from kurbel.quantity import GREEK
+from kurbel.quantity import ENTRY_DECIMALS, ENTRY_DIGITS, GREEK
 from kurbel.tables.tables import CellValue
 
 # numbers
@@ -173,12 +173,14 @@ def whole_if_integral(value: CellValue) -> CellValue:
     if value is None:
         return None
     is_integral = abs(value) < 1e15 and value == int(value)
-    return int(value) if is_integral else value
+    if not is_integral:
+        return value
+    return int(value)
 
 
 # texts
 
-FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
+FORMATS = ("table", "csv", "json", "xlsx", "markdown", "html", "latex")
 LAYOUTS = ("book", "rows")
 _ASCII = {
     **GREEK, "∮": "integral ", "₀": "0",
@@ -254,7 +256,9 @@ class Look(NamedTuple):
         """Return a text whose numbers have the decimal sign that is wanted; in HTML and LaTeX see `fine`."""
         if self.format in ("html", "latex"):
             return self.fine(text)
-        return re.sub(_POINT, ",", text) if self.comma else text
+        if not self.comma:
+            return text
+        return re.sub(_POINT, ",", text)
 
     def fine(self, text: str) -> str:
         """Return a text whose numbers have thin spaces, minus signs and degrees as signs, where the output has them.
@@ -265,7 +269,9 @@ class Look(NamedTuple):
         if self.has("−" + _THIN):
             text = re.sub(r"(?<![\w.-])-(?=\d)", "−", in_thousands(text))
             text = re.sub(r"(?<=\d) deg\b", "°", text)
-        return re.sub(_POINT, ",", text) if self.comma else text
+        if not self.comma:
+            return text
+        return re.sub(_POINT, ",", text)
 
     def value(self, value: float, digits: int | None = None) -> str:
         """Return a single value with its power of ten, to so many digits if no others are wanted."""
@@ -278,11 +284,25 @@ class Look(NamedTuple):
         (('87.70', 'kN'), ('22.02°', ''))
         """
         number, printed = self.value(value, digits), self.unit(unit)
-        return (number + printed, "") if printed == "°" else (number, printed)
+        if printed == "°":
+            return (number + printed, "")
+        return (number, printed)
 
     def angle(self, value: float) -> str:
         """Return an angle in degrees, with two decimals at most if no digits are wanted."""
-        return self.value(value) if self.digits else self.number(angle(value))
+        if self.digits:
+            return self.value(value)
+        return self.number(angle(value))
+
+    def value_for_entry(self, value: float) -> str:
+        """Return a value with the digits with which people write it into a machine file."""
+        return self.value(value, ENTRY_DIGITS)
+
+    def angle_for_entry(self, value: float) -> str:
+        """Return an angle with the decimals with which people write it into a machine file."""
+        if self.digits:
+            return self.value(value)
+        return self.number(angle(value, ENTRY_DECIMALS))
 
     def degrees(self, value: float) -> str:
         """Return an angle with its unit."""
@@ -310,18 +330,24 @@ class Look(NamedTuple):
         printed = signs.get(unit, unit.replace("^2", "²").replace("^3", "³"))
         if not self.has(printed):
             printed = unit
-        return f"{self._power(exponent)} {printed}".strip() if exponent else printed
+        if not exponent:
+            return printed
+        return f"{self._power(exponent)} {printed}".strip()
 
     def counted(self, number: str, exponent: int) -> str:
         """Return a number with its power of ten: `2.4·10⁶`, or `2.4e6`."""
         if not exponent:
             return number
         printed = "·" + self._power(exponent)
-        return number + printed if self.has(printed) else f"{number}e{exponent}"
+        if self.has(printed):
+            return number + printed
+        return f"{number}e{exponent}"
 
     def _power(self, exponent: int) -> str:
         printed = "10" + str(exponent).translate(_SUPERSCRIPT)
-        return printed if self.has(printed) else f"10^{exponent}"
+        if self.has(printed):
+            return printed
+        return f"10^{exponent}"
 
 
 def width(text: str) -> int:
@@ -338,7 +364,9 @@ def width(text: str) -> int:
 def padded(text: str, cells: int, flush_right: bool = False) -> str:
     """Return the text in so many cells, flush left or right."""
     blanks = " " * (cells - width(text))
-    return blanks + text if flush_right else text + blanks
+    if flush_right:
+        return blanks + text
+    return text + blanks
 
 
 class Piece(NamedTuple):

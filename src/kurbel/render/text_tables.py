@@ -1,7 +1,7 @@
 """First pass of every printed format: the values of a report as tables of text, with their digits, units and marks."""
 
 from collections.abc import Collection, Iterator, Sequence
-from itertools import groupby
+from itertools import chain, groupby
 from typing import NamedTuple
 
 from kurbel.quantity import NOISE_POWER
@@ -60,7 +60,8 @@ def sheets(report: Report, look: Look) -> Iterator[tuple[list[TextColumn], Bands
     parts = [part for part in report.all_parts if part.columns]
     for _, run in groupby(parts, lambda part: part.columns[0].values):
         same_angles = list(run)
-        has_marks = any(column.marked for part in same_angles for column in part.columns)
+        columns = chain.from_iterable(part.columns for part in same_angles)
+        has_marks = any(column.marked for column in columns)
         pad = " " if has_marks else ""
 
         phi = same_angles[0].columns[0]
@@ -176,13 +177,18 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
     # what columns of one unit have together
     sharing: dict[str, list[CellValue]] = {}
     for column in table.columns:
-        if column.decimals is None and not column.alone:
+        if column.decimals is None and not column.alone and not column.for_entry:
             sharing.setdefault(column.unit, []).extend(column.values)
 
     missing = look.text("–")
     for column in table.columns:
         if column.decimals is not None:
             text_column = _scaled(column, Scale(column.decimals), look, missing=missing)
+        elif column.for_entry:
+            cells = [
+                missing if value is None else look.value_for_entry(value) for value in column.values
+            ]
+            text_column = _headed(column, cells, look)
         elif column.alone:
             text_column = _each_scaled(column, column.alone, look, missing)
         elif column.unit == "deg":
@@ -271,6 +277,8 @@ def _value(key_value: KeyValue, look: Look) -> str:
 
     numbers = value if isinstance(value, tuple) else (value,)
     text = look.angle if key_value.unit == "deg" else look.value
+    if key_value.for_entry:
+        text = look.angle_for_entry if key_value.unit == "deg" else look.value_for_entry
     if len(numbers) > _MOST_LISTED:
         return f"{len(numbers)} from {text(min(numbers))} to {text(max(numbers))}"
     separator = "; " if look.comma else ", "

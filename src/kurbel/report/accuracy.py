@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
@@ -62,7 +63,8 @@ def accuracy_report(
         part, shown = _part_of(scene, textbook, machine is not None, quick)
         parts.append(part)
         sentences += shown
-    has_speed = any(table.id == SPEED for part in parts for table in part.place_tables)
+    tables = chain.from_iterable(part.place_tables for part in parts)
+    has_speed = any(table.id == SPEED for table in tables)
     return Report(
         f"{machine.name if machine else 'built-in scenes'}. Accuracy and run time",
         "accuracy",
@@ -163,10 +165,10 @@ def _of_speed(name: str, rows: Sequence[stiff.SpeedTrial]) -> list[str]:
     """Return what the rows show of the speed: the most exact rival, and how many fail."""
     if not rows:
         return []
-    own, others = rows[0], [row for row in rows if not row.method.startswith(trials.OWN)]
+    kurbel, others = rows[0], [row for row in rows if not row.method.startswith(trials.OWN)]
     failed = sum(row.omega is None for row in others)
     ends = sum(row.omega is not None and row.state != "periodic" for row in others)
-    begin = f"{name}: the error of ω is {own.omega:.0e} by kurbel"
+    begin = f"{name}: the error of ω is {kurbel.omega:.0e} by kurbel"
     count = f"of {len(others)} runs by other methods {failed} fail and {ends} end without a periodic speed"
     best = min(
         (row for row in others if row.omega is not None),
@@ -183,10 +185,10 @@ def _table(id: str, title: str, rows: Sequence[NamedTuple], heads: int) -> Place
     """Return a table of records, whose first fields are the names of a row and whose others are its columns."""
     fields = rows[0]._fields if rows else ()
     columns: list[Column] = []
-    for place, name in enumerate(fields):
-        values = [row[place] for row in rows]
+    for field, name in enumerate(fields):
+        values = [row[field] for row in rows]
         has_values = any(value is not None for value in values)
-        if place >= heads and has_values:
+        if field >= heads and has_values:
             unit = "ms" if name in ("median", "least", "time") else ""
             columns.append(Column(name, _SYMBOLS.get(name, name), name, unit, values, alone=2))
     names = tuple(tuple(map(str, row[:heads])) for row in rows)

@@ -102,17 +102,24 @@ ELLIPSES = by_id(
 """Columns of the table of ellipses: what the two circles of an order make together."""
 
 WEIGHTS = by_id(
-    Quantity("axial_position", "z", "length", "Position along the shaft"),
-    Quantity("product", "u", "unbalance", "Mass times radius"),
-    Quantity("angle", "α", "angle", "Direction at φ = 0 from the stroke line of cylinder 1"),
+    Quantity("axial_position", "z", "length", "Position along the shaft", for_entry=True),
+    Quantity("product", "u", "unbalance", "Mass times radius", for_entry=True),
+    Quantity(
+        "angle",
+        "α",
+        "angle",
+        "Direction at φ = 0 from the stroke line of cylinder 1",
+        for_entry=True,
+    ),
     Quantity("hammer_blow", "H", "force", "Amplitude by which it loads and lifts its wheel"),
     Quantity(
         "counterweight",
         "u_R",
         "unbalance",
         "The whole counterweight in the wheel, mass times radius",
+        for_entry=True,
     ),
-    Quantity("counterweight_angle", "α_R", "angle", "Its direction at φ = 0"),
+    Quantity("counterweight_angle", "α_R", "angle", "Its direction at φ = 0", for_entry=True),
 )
 """Columns of the tables of weights."""
 
@@ -267,4 +274,6 @@ def _direction(circle: complex) -> float | None:
     if not circle:
         return None
     degrees = math.degrees(cmath.phase(circle))
-    return degrees if degrees > _NOTHING - 180 else degrees + 360
+    if degrees > _NOTHING - 180:
+        return degrees
+    return degrees + 360

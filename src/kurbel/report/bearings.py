@@ -11,9 +11,9 @@ from kurbel.notes.left_out import (
 from kurbel.notes.machine_results import bearing_warnings, rods_on_pin
 from kurbel.notes.warnings import as_far_as_solved, of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.bearings import Bearing
+from kurbel.solver.chapters.bearing import Bearing
 from kurbel.tables.frame import Functions, Subject
-from kurbel.tables.tables import together
+from kurbel.tables.tables import joined_names
 
 
 def _film_warnings(case: Case) -> Iterator[str]:
@@ -50,7 +50,7 @@ def _loaded(case: Case) -> list[Subject]:
 def _next_to(bearing: Bearing) -> str:
     """Return the cylinders on the throws to either side of a main bearing, in words."""
     names = [cylinder.drive.name for cylinder in bearing.cylinders]
-    return f"next to {together(names)}"
+    return f"next to {joined_names(names)}"
 
 
 def _bearing_notes(case: Case) -> Iterator[str]:

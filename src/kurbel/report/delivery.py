@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from itertools import chain, pairwise
 
 from kurbel.declared.unit_systems import show
+from kurbel.machine import Machine
+from kurbel.machine.pumped import Pump
 from kurbel.notes.left_out import missing
 from kurbel.notes.warnings import of_machine
 from kurbel.quantity import Quantity, by_id
@@ -39,7 +41,7 @@ def _delivering(case: Case) -> list[Subject]:
     for piston in delivery.pistons:
         subjects.append(Subject(piston.name, piston, piston.at))
     pump = delivery.pump
-    whole = Subject(
+    machine_subject = Subject(
         "whole machine",
         pump,
         pump.at if pump else None,
@@ -47,7 +49,7 @@ def _delivering(case: Case) -> list[Subject]:
         warnings=chain(of_machine(case), delivery_warnings(delivery)),
         whole=True,
     )
-    return [*subjects, whole]
+    return [*subjects, machine_subject]
 
 
 def _ends_tables(stage: CompressorStage) -> Iterator[Places]:
@@ -65,7 +67,13 @@ def _ends_tables(stage: CompressorStage) -> Iterator[Places]:
 def _delivery_notes(case: Case) -> Iterator[str]:
     delivery = case.delivery
     if delivery.pump:
-        yield "Flow is that of rigid pistons: each chamber delivers all that it displaces, less the slip."
+        if delivery.pump.is_compressible:
+            yield (
+                "Valves open late, after the liquid has been compressed or has expanded (bulk_modulus): flow counts at "
+                "the pressure of its pipe, η_v is what is drawn in over the displacement."
+            )
+        else:
+            yield "Flow is that of rigid pistons: each chamber delivers all that it displaces, less the slip."
         for name, end in delivery.open_ends:
             if end.pipe:
                 side = "head" if end.is_head else "crank"
@@ -99,6 +107,8 @@ def delivery_left_out(delivery: MachineDelivery) -> Iterator[LeftOut]:
         pipes = machine.pump and (machine.pump.suction_pipe or machine.pump.delivery_pipe)
         no_pipes = "" if pipes else "no pipes given under pump"
         yield from missing({"flow": no_speed, "pipes, vessels, suction lift": no_pipes})
+        if machine.pump:
+            yield from _assumed(machine, machine.pump)
         for name, end in delivery.open_ends:
             if not end.pipe:
                 side = "head" if end.is_head else "crank"
@@ -117,6 +127,33 @@ def delivery_left_out(delivery: MachineDelivery) -> Iterator[LeftOut]:
                 "isentropic power": no_gas or no_exponent,
             }
         )
+
+
+def _assumed(machine: Machine, pump: Pump) -> Iterator[LeftOut]:
+    """Yield what is taken for figures of a pump that are not given."""
+    for pipe, side in ((pump.suction_pipe, "suction"), (pump.delivery_pipe, "delivery")):
+        if pipe and pipe.vessel and pipe.vessel.exponent is None:
+            reason = "no exponent given, 1 (isothermal air) is taken"
+            yield LeftOut(f"exponent of the air in the {side} vessel", reason)
+    liquid = pump.liquid
+    if pump.suction_pipe and liquid.vapour_pressure is None:
+        pressure = show(liquid.boiling_pressure, "pressure")
+        reason = f"no vapour_pressure given, that of water at 20 °C, {pressure}, is taken"
+        yield LeftOut("vapour pressure of the liquid", reason)
+    if pump.suction_pipe and pump.suction_pipe.lift is None:
+        yield LeftOut("NPSH available", "no lift of the suction pipe given")
+    if liquid.bulk_modulus is None:
+        return
+    soft = [card for card in machine.chambers if liquid.opening_fractions(card) is not None]
+    if not soft:
+        reason = "no chamber has one pressure on each stroke, as `constant` gives"
+        yield LeftOut("compression of the liquid", reason)
+        return
+    if any(getattr(card, "clearance", None) is None for card in soft):
+        reason = "no clearance given with every `constant`, it is taken as 0"
+        yield LeftOut("clearance of the chambers", reason)
+    reason = "heads in pipes are those of valves that open in the dead centres"
+    yield LeftOut("surge of pressure where a valve opens late", reason)
 
 
 def delivery_warnings(delivery: MachineDelivery) -> Iterator[str]:

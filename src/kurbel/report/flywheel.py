@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from kurbel.declared.unit_systems import show
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import DeadCentre
+from kurbel.solver.dead_centre import DeadCentre
 from kurbel.tables.frame import Functions, Subject
 from kurbel.tables.tables import LeftOut
 
@@ -27,7 +27,7 @@ def _turned(case: Case) -> list[Subject]:
     subjects = []
     for cylinder in case.cylinders:
         subjects.append(Subject(cylinder.drive.name, DeadCentre(cylinder, effort.cycle)))
-    whole = Subject(
+    machine_subject = Subject(
         "whole machine",
         turning,
         turning.at if effort.swing is None else None,
@@ -35,7 +35,7 @@ def _turned(case: Case) -> list[Subject]:
         warnings=_warnings(case),
         whole=True,
     )
-    return [*subjects, whole]
+    return [*subjects, machine_subject]
 
 
 def _flywheel_notes(case: Case) -> Iterator[str]:

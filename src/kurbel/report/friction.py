@@ -43,13 +43,13 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
         "plane", "Force P over the weight Q", ("direction",), by_id(_UP, _HELD), rows
     ).shown("si")
     (rho,) = shown_key_values([(_RHO, math.degrees(math.atan(coefficient)))], "si")
-    whole = Part("inclined plane", (), (rho,), tuple(left), place_tables=(table,))
+    body = Part("inclined plane", (), (rho,), tuple(left), place_tables=(table,))
     head = (
         f"Incline {incline:g} deg, coefficient {coefficient:g} (Redtenbacher 1862)",
         "P moves the body up, P_1 keeps it from sliding down; a negative P_1 must push: friction alone holds the body.",
     )
     return Report(
-        "Friction on an inclined plane", "friction", None, "cylinders", (), whole, head=head
+        "Friction on an inclined plane", "friction", None, "cylinders", (), body, head=head
     )
 
 

@@ -68,7 +68,7 @@ def _harmonics(
     why = ""
     if harmonics.machine.inertia is None:
         why = "no masses, or no speed given" if cylinders else "the effort is given as a torque"
-    whole = Subject(
+    machine_subject = Subject(
         "whole machine",
         harmonics,
         left_out=chain(flywheel_left_out(machine), missing({"gas and inertia apart": why})),
@@ -76,7 +76,7 @@ def _harmonics(
         tables=_orders_of_machine(harmonics, speeds or (), machine.speed),
         whole=True,
     )
-    return [*cylinders, whole], _harmonics_notes(harmonics)
+    return [*cylinders, machine_subject], _harmonics_notes(harmonics)
 
 
 HARMONICS = Functions("Harmonics of the turning effort", whole_machine("harmonics"), own=_harmonics)
@@ -97,7 +97,9 @@ def requested_orders(machine: Machine, requested: Sequence[float] | None) -> Arr
             listed = usual.get(turns, f"1/{turns}, 2/{turns}, 3/{turns}, …")
             cycle = f"the cycle repeats after {360 * turns} degrees"
             raise UsageError(f"--orders {order:g}: {cycle} and has the orders {listed}")
-    return None if requested is None else np.unique(requested)
+    if requested is None:
+        return None
+    return np.unique(requested)
 
 
 def _harmonics_notes(harmonics: MachineOrders) -> Iterator[str]:

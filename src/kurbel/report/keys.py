@@ -74,10 +74,10 @@ def every_place(is_wanted: Callable[[str], bool] = _is_any) -> KeyPlaces:
     Those of a cylinder are at the top. is_wanted: takes a key, or the word of a mechanism, and returns whether what is
     below it is listed, too.
     """
-    places: KeyPlaces = {}
+    keys_by_path: KeyPlaces = {}
     for listed in _of_record(RecordForm(Machine), "", is_wanted):
-        places.setdefault(listed.path, []).append(listed)
-    return places
+        keys_by_path.setdefault(listed.path, []).append(listed)
+    return keys_by_path
 
 
 def places_of(texts: Iterable[tuple[str, str]]) -> KeyPlaces:
@@ -132,11 +132,11 @@ def _hint(name: str, listed_keys: Iterable[str]) -> str:
     return f"; did you mean {' or '.join(map(repr, similar))}?"
 
 
-def meaning(path: str, places: KeyPlaces) -> str:
+def meaning(path: str, keys_by_path: KeyPlaces) -> str:
     """Return what the key at the end of a path means, as the file has it; '' if it is not known."""
     steps = _steps(path)
     for above in range(len(steps)):
-        listed = places.get(".".join(steps[above:]))
+        listed = keys_by_path.get(".".join(steps[above:]))
         if listed:
             break
     else:

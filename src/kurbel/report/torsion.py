@@ -11,7 +11,8 @@ from kurbel.notes.warnings import of_machine
 from kurbel.quantity import Quantity, by_id
 from kurbel.report.harmonics import TORQUE_ORDERS, requested_orders
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.chain import Holzer, holzer_at, tree_from_first
+from kurbel.solver.chapters.chain import tree_from_first
+from kurbel.solver.chapters.natural_modes import Holzer, holzer_at
 from kurbel.solver.chapters.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
 from kurbel.tables.frame import Frame, Functions, Subject
 from kurbel.tables.shown import PlaceRow, Places
@@ -138,8 +139,8 @@ def _torsion(
         Places("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows),
     ]
     if vibration.segments:
-        these = "" if vibration.steady else "these "
-        title = f"Torques and stresses at the working speed, all {these}orders together"
+        determiner = "" if vibration.steady else "these "
+        title = f"Torques and stresses at the working speed, all {determiner}orders together"
         of_segments: list[PlaceRow] = [
             ((segment.name,), _of_piece(segment)) for segment in vibration.segments
         ]
@@ -150,7 +151,7 @@ def _torsion(
     subjects = []
     if frame.columns:
         subjects = [Subject(segment.name, at=segment.at) for segment in vibration.segments]
-    whole = Subject(
+    machine_subject = Subject(
         "shaft line",
         vibration,
         left_out=torsion_left_out(vibration),
@@ -161,7 +162,7 @@ def _torsion(
     with_torque = ["M_vibratory" in values for _, values in rows]
     are_some_hidden = any(with_torque) and not all(with_torque)
     notes = _torsion_notes(vibration, orders is None, are_some_hidden)
-    return [*subjects, whole], notes
+    return [*subjects, machine_subject], notes
 
 
 TORSION = Functions(

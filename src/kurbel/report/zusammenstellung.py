@@ -127,9 +127,11 @@ def zusammenstellung(
     has_return_stroke = min(angles) >= 0 and max(angles) <= 180
     mirrored = _on_return_stroke(symbols) if has_return_stroke else ""
     has_motion = "acceleration_factor" in ids or "velocity_factor" in ids
-    whole = Part("", (), place_tables=(_roots(ratios),)) if has_motion else None
-    report = Report(title, "table", None, "ratios", parts, whole, mirrored)
-    return _with_printed(report, formula) if compare else report
+    root_table = Part("", (), place_tables=(_roots(ratios),)) if has_motion else None
+    report = Report(title, "table", None, "ratios", parts, root_table, mirrored)
+    if not compare:
+        return report
+    return _with_printed(report, formula)
 
 
 def _ids_of(rows: Iterable[str]) -> list[str]:
@@ -276,7 +278,9 @@ def _with_printed(report: Report, formula: str) -> Report:
     All factors have the three decimals of the book. Raises UsageError if the book prints no such table.
     """
     printed = _printed()
-    wanted = {(column.id, part.name) for part in report.parts for column in part.columns[1:]}
+    wanted = set[tuple[str, str | float | None]]()
+    for part in report.parts:
+        wanted.update((column.id, part.name) for column in part.columns[1:])
     has_book_angles = [*report.parts[0].columns[0].values] == [*range(0, 181, 10)]
     if wanted - {*printed} or formula != "book" or not has_book_angles:
         only = "only b and c by --formula book, for L/R = 5, 4.5 and 4, every 10 degrees"
@@ -298,10 +302,10 @@ def _with_printed(report: Report, formula: str) -> Report:
             rows.append(column._replace(decimals=3))
             rows.append(Column(f"{column.id}_printed", name, name, "", figures, text, 3, misprints))
         parts.append(part._replace(columns=tuple(rows)))
-    whole = report.whole and report.whole._replace(
+    with_roots = report.whole and report.whole._replace(
         place_tables=tuple(map(_with_three_decimals, report.whole.place_tables))
     )
-    return report._replace(parts=tuple(parts), whole=whole, notes=tuple(notes))
+    return report._replace(parts=tuple(parts), whole=with_roots, notes=tuple(notes))
 
 
 _SIGNS = "±: + on the outstroke, − on the return stroke, as the book prints it."

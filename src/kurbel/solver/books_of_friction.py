@@ -32,4 +32,6 @@ def mean_by_integral(lam: Number, f: Number) -> Number:
 
 
 def _float_or_array(values: Array) -> Number:
-    return float(values) if np.ndim(values) == 0 else values
+    if np.ndim(values) != 0:
+        return values
+    return float(values)

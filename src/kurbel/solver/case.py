@@ -20,14 +20,16 @@ from kurbel.solver.forces import CylinderForces
 
 if TYPE_CHECKING:
     from kurbel.solver.chapters.balance import MachineBalance
-    from kurbel.solver.chapters.bearings import Bearing, ShaftBearings
+    from kurbel.solver.chapters.bearing import Bearing
+    from kurbel.solver.chapters.bearings import ShaftBearings
     from kurbel.solver.chapters.compressors import CompressorStage
     from kurbel.solver.chapters.delivery import Delivery, MachineDelivery
     from kurbel.solver.chapters.harmonics import MachineOrders
     from kurbel.solver.chapters.stress import CrankshaftStrength
     from kurbel.solver.chapters.torsion import ShaftVibration
+    from kurbel.solver.dead_centre import DeadCentre
     from kurbel.solver.effort import TurningEffort
-    from kurbel.solver.flywheel import DeadCentre, MachineTurning
+    from kurbel.solver.flywheel import MachineTurning
 
 
 class Case(NotebookView):
@@ -171,7 +173,7 @@ def _turning() -> type[MachineTurning]:
 
 
 def _dead_centre() -> type[DeadCentre]:
-    from kurbel.solver.flywheel import DeadCentre
+    from kurbel.solver.dead_centre import DeadCentre
 
     return DeadCentre
 
@@ -183,7 +185,7 @@ def _stress() -> type[CrankshaftStrength]:
 
 
 def _bearing() -> type[Bearing]:
-    from kurbel.solver.chapters.bearings import Bearing
+    from kurbel.solver.chapters.bearing import Bearing
 
     return Bearing
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 
 import numpy as np
 
-from kurbel.arrays import Array, Number, Truth
+from kurbel.arrays import Array, Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.arithmetic import spread
 from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
-from kurbel.solver.gas import PistonGas, Pressure
+from kurbel.solver.gas import HeatOfEnd, PistonGas, Pressure
 from kurbel.solver.motion import MotionColumns
 
 _BOTH = ("motion", "forces")
@@ -43,8 +43,20 @@ def _own_volume(state: Chambers, end: str) -> Number | None:
 
 
 def _own_rise(state: Chambers, end: str) -> Array | None:
+    """Return the rise of a pressure over the crank angle; None where the end has none, or a card over the stroke."""
     chamber = _own_end(state, end)
-    return chamber.rise(state.phi) if chamber and chamber.traced else None
+    if chamber is None or chamber.by_stroke:
+        return None
+    return chamber.rise(state.phi, state.drive.index)
+
+
+def _own_heat(
+    state: Chambers, column: Callable[[HeatOfEnd, Array, Indices | None], Array]
+) -> Array | None:
+    """Return a column of the heat release; None where the cylinder's own piston has none."""
+    gas = state.drive.own_gas
+    heat = gas.heat if gas else None
+    return None if heat is None else column(heat, state.phi, state.drive.index)
 
 
 def _opening(state: Chambers, end: str) -> Number | None:
@@ -52,7 +64,9 @@ def _opening(state: Chambers, end: str) -> Number | None:
     if valve is None or w is None:
         return None
     head, crank = valve.ends
-    return head.opening_at(w) if end == "head" else crank.opening_at(-w)
+    if end == "head":
+        return head.opening_at(w)
+    return crank.opening_at(-w)
 
 
 class Chambers(MotionColumns):
@@ -125,6 +139,20 @@ class Chambers(MotionColumns):
         of=_own_rise,
         on_request=("forces",),
     )
+    dQ = value(
+        "dQ/dφ",
+        "energy_rise",
+        "Heat released per degree of crank angle, over 1 deg, less what the walls take",
+        lambda state: _own_heat(state, HeatOfEnd.rate),
+        on_request=("forces",),
+    )
+    x_b = value(
+        "x_b",
+        "ratio",
+        "Burnt share: heat released so far over all that is released",
+        lambda state: _own_heat(state, HeatOfEnd.burnt),
+        on_request=("forces",),
+    )
     P_gas = value(
         "P_gas",
         "force",
@@ -147,7 +175,9 @@ class Chambers(MotionColumns):
     def valve_displacement(self) -> Number | None:
         """Displacement w of the valve in m; None without one."""
         valve = self.drive.cylinder.valve
-        return valve.displacement(self.angle) if valve else None
+        if not valve:
+            return None
+        return valve.displacement(self.angle)
 
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""
@@ -158,7 +188,7 @@ class Chambers(MotionColumns):
 
     def force_on(self, gas: PistonGas, mean_area: bool = False) -> Array:
         """Return the gas force p_H A_H − p_C A_C in N on a piston (R 296); mean_area: both ½(A_H + A_C) (R 297)."""
-        head, crank = (spread(one, self.drive.index) for one in gas.areas)
+        head, crank = (spread(area, self.drive.index) for area in gas.areas)
         if mean_area:
             head = crank = (head + crank) / 2
         sense = -1.0 if gas.turned else 1.0
@@ -175,11 +205,15 @@ class Chambers(MotionColumns):
 
     def force_of(self, shares: Sequence[Truth]) -> Array | None:
         """Return the gas force in N on those pistons whose share is true, in each machine; None without any."""
-        each = zip(self.piston_forces, shares)
+        forces_and_shares = zip(self.piston_forces, shares)
         counted = [
-            force * spread(share, self.drive.index) for force, share in each if share is not False
+            force * spread(share, self.drive.index)
+            for force, share in forces_and_shares
+            if share is not False
         ]
-        return sum(counted) if counted else None
+        if not counted:
+            return None
+        return sum(counted)
 
     P_driving = value(
         "P_gas+",

@@ -23,7 +23,7 @@ from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, Samples, joined_pieces, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import result
-from kurbel.solver.state import State, on_crosshead_pin, on_pin
+from kurbel.solver.state import State, crank_pin_force, crosshead_pin_force
 
 T = TypeVar("T")
 
@@ -107,9 +107,7 @@ class SampledCylinder:
         """Largest last coefficients of the Chebyshev series on pieces that could be halved, over the largest value."""
         values = np.stack(_known(self.pieces, _smooth(self.samples)))
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
-        tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[
-            :, self.pieces.half > NARROWEST
-        ]
+        tails = np.abs(self.pieces.rule.tail @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
         return float((tails.max(axis=1) / size).max())
 
     # extremes and zeros
@@ -117,7 +115,9 @@ class SampledCylinder:
     def sampled(self, column: str) -> Array | None:
         """Return a column at the nodes of the pieces, (nodes, pieces); None for one that is left out."""
         values = self.samples[column]
-        return None if values is None else self.pieces.filled(values)
+        if values is None:
+            return None
+        return self.pieces.filled(values)
 
     def extremes_over(self, columns: Mapping[str, Number | None]) -> dict[str, Extremes]:
         """Return the extremes in SI of columns of `samples` by id, without those that are None."""
@@ -131,7 +131,9 @@ class SampledCylinder:
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         values = self.sampled(column)
-        return None if values is None else where_is(self.pieces, values, value)
+        if values is None:
+            return None
+        return where_is(self.pieces, values, value)
 
 
 def _state_on(drive: Drive, pieces: Pieces) -> State:
@@ -139,7 +141,7 @@ def _state_on(drive: Drive, pieces: Pieces) -> State:
 
     These are computed once.
     """
-    what_may_vary = (drive.mechanism, drive.cylinder.timed_pistons, drive.machine.ambient)
+    what_may_vary = (drive.mechanism, drive.pistons, drive.machine.ambient)
     if drive.count is None or varies(what_may_vary):
         return State.on(drive, pieces)
     first = State.on(drive, pieces.taken(pieces.machine == 0))
@@ -200,9 +202,9 @@ def _before_friction(state: State) -> list[Array]:
     return [state.filled(column) for column in columns]
 
 
-def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
+def _restored(drive: Drive, pieces: Pieces, samples: Samples) -> State:
     """Return the state on pieces from the values of `_before_friction` there, each (nodes, pieces)."""
-    sin, cos, slope, curvature, *rest = known
+    sin, cos, slope, curvature, *rest = samples
     pistons = len(rest) - len(drive.gas)
     angle = CrankAngle(pieces.degrees, sin, cos, (rest[0], rest[1]) if pistons else None)
     state = State(drive.taken(pieces.machine), angle, pieces.middle)
@@ -213,9 +215,9 @@ def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
 def _loads_of_pins(state: State) -> list[Number]:
     """Return the loads of the pins without their friction: where one passes through zero, its magnitude has a kink."""
     free = state.without_pin_friction
-    loads = [on_pin(free).T]
+    loads = [crank_pin_force(free).T]
     if free.rod_angle:
-        loads.append(on_crosshead_pin(free).D)
+        loads.append(crosshead_pin_force(free).D)
     return loads
 
 
@@ -232,7 +234,7 @@ def _ring_pressures_of_links(state: State) -> list[Number]:
 
 def _senses_of_links(state: State) -> list[Number]:
     """Return the forces whose signs decide which sides of the guides of links are loaded, where these rub."""
-    return [link.guide_sense for link in state.links if link.drive.rubs]
+    return [link.guide_sign for link in state.links if link.drive.rubs]
 
 
 def _sense_without_pins(state: State) -> list[Number]:
@@ -247,7 +249,9 @@ def _sense_with_pins(state: State) -> list[Number]:
 
 def _sense(state: State) -> Number:
     """Return the force in N whose sign decides which side of a guide, or of a Scotch yoke, is loaded."""
-    return state.guide_sense if state.rod_angle else state.after_steady_friction
+    if state.rod_angle:
+        return state.guide_sign
+    return state.after_steady_friction
 
 
 def _refuse_locking(state: State, pieces: Pieces) -> None:
@@ -270,7 +274,8 @@ def _smooth(state: State) -> list[Number | None]:
         columns += [state.P_gas, state.P, state.N, state.T]
         columns += state.rubbing or ()
     for offer in state.mechanism.OFFERS:
-        if offer.quantity.extremes:
+        # no force depends on an approximation of the books
+        if offer.quantity.extremes and not offer.quantity.of_book:
             columns.append(offer.of(state))
     return columns
 

@@ -15,7 +15,7 @@ from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.batch import taken
 from kurbel.machine.cylinder import crank_lag
-from kurbel.machine.parts import GasOnRings, Rings
+from kurbel.machine.parts import GasOnRings, Piston, Rings
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas
@@ -23,12 +23,15 @@ from kurbel.solver.motion import every_dead_centre
 
 if TYPE_CHECKING:
     from kurbel.mechanisms.link_rod import LinkedPiston
+    from kurbel.solver.output_load import OutputLoad
     from kurbel.solver.shaft import SupportedShaft
 
 _IDLE = 1e-4
 """Mean indicated pressure in Pa that is rounding: such a piston neither drives nor is driven."""
 _DENSE = 600
 """Breaks of a cycle, as at the samples of a trace, from which on its pieces are short enough for 6 nodes."""
+_DENSEST = 200_000
+"""The same for 4 nodes: what cubics miss on so short pieces is rounding."""
 
 
 class ExactRod(NamedTuple):
@@ -74,8 +77,8 @@ class Drive:
     weight: of the reciprocating masses along the stroke line and on the guide, None where it is left out; down: cos of
     the inclination i (180° − i if the machine turns under), None without one: if positive, N > 0 loads the lower guide.
 
-    resistance: load on the output, a force, or a moment on what only swings; resistance_work: its work per cycle,
-    negative; path: distance per cycle of what slides, there and back.
+    resistance: load on the output against its motion, a force, or a moment on what only swings; resistance_work: its
+    work per cycle, negative but where it helps more; path: distance per cycle of what slides, there and back.
 
     crosshead_friction: f, 0 without one; rubs: whether it is not 0; guide_area: of the shoe, None where not given;
     yoke_friction: f of the block and of the guides of a Scotch yoke, 0 where not given; yoke_rubs: whether either is
@@ -102,7 +105,8 @@ class Drive:
         self._take_weight()
         self._take_resistance()
         self.has_gas = any(piston.indicator for piston in cylinder.pistons)
-        self.has_force = bool(self.has_gas or self.has_inertia or self.weight or self.resistance)
+        has_load = self.resistance is not None or cylinder.force is not None
+        self.has_force = bool(self.has_gas or self.has_inertia or self.weight or has_load)
         self._take_friction()
 
     def _take_masses(self) -> None:
@@ -188,7 +192,9 @@ class Drive:
             return self
         other = Drive(taken(self.machine, index), taken(self.cylinder, index), self.count, index)
         other.gas = self.gas
+        other.load = self.load
         other.driving, other.driven, other.pumping = self.driving, self.driven, self.pumping
+        other.load_drives = self.load_drives
         return other
 
     @cached_property
@@ -215,6 +221,8 @@ class Drive:
         bends = [Angles(np.repeat(np.arange(count), centres.shape[1]), centres.ravel())]
         for gas in self.gas:
             bends += gas.starts
+        if self.load is not None:
+            bends += self.load.starts
         # the guide of a master rod feels where something bends or jumps in its links
         for link in self.links:
             ends = link.pieces.ends
@@ -222,13 +230,19 @@ class Drive:
             bends.append(Angles(owners, np.mod(ends + self.lag_of(link), self.cycle)))
         machine = np.concatenate([angles.machine for angles in bends])
         degrees = np.concatenate([angles.degrees for angles in bends])
-        is_dense = len(degrees) >= _DENSE * count
-        return Pieces.between(Angles(machine, degrees), count, self.cycle, 6 if is_dense else 16)
+        nodes = 16
+        if len(degrees) >= _DENSE * count:
+            nodes = 6
+        if len(degrees) >= _DENSEST * count:
+            nodes = 4
+        return Pieces.between(Angles(machine, degrees), count, self.cycle, nodes)
 
     def centrifugal(self, mass: Number) -> Number:
         """Return the centrifugal force m R ω² in N of a mass in kg at the crank pin; 0 where no speed is given."""
         # a float squared by ** raises where the product is infinite
-        return 0.0 if self.omega is None else mass * self.mechanism.crank * self.omega * self.omega
+        if self.omega is None:
+            return 0.0
+        return mass * self.mechanism.crank * self.omega * self.omega
 
     def weight_of(self, mass: Number) -> tuple[Number, Number]:
         """Return the weight in N of a mass in kg along the stroke line and on the guide; 0 where it is left out."""
@@ -240,16 +254,26 @@ class Drive:
     # pressures
 
     @cached_property
+    def pistons(self) -> tuple[Piston, ...]:
+        """Its pistons, with the cards that a valve and a compressible liquid give them."""
+        pistons = self.cylinder.timed_pistons
+        if self.machine.pump is None:
+            return pistons
+        liquid = self.machine.pump.liquid
+        return tuple(liquid.compressed(piston) for piston in pistons)
+
+    @cached_property
     def gas(self) -> tuple[PistonGas, ...]:
         """Pressures on the pistons that have an indicator."""
         gases = []
-        for number, piston in enumerate(self.cylinder.timed_pistons):
+        for number, piston in enumerate(self.pistons):
             if piston.indicator:
                 turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
                 repeats, ambient = self.revolutions // turns, self.machine.ambient
-                gases.append(
-                    PistonGas(piston, self.mechanism, 360.0 * turns, ambient, repeats, self.count)
+                gas = PistonGas(
+                    piston, self.mechanism, 360.0 * turns, ambient, repeats, self.count, number
                 )
+                gases.append(gas)
         return tuple(gases)
 
     @property
@@ -273,16 +297,39 @@ class Drive:
         """Of the pistons that have an indicator, whether each is driven: its indicated work is negative."""
         return tuple(gas.work < -_IDLE * gas.swept_volume for gas in self.gas)
 
+    # the load on the output
+
+    @cached_property
+    def load(self) -> OutputLoad | None:
+        """The load `force` on what slides or swings; None without one."""
+        force = self.cylinder.force
+        if force is None:
+            return None
+        from kurbel.solver.output_load import OutputLoad
+
+        return OutputLoad(force, self.mechanism, self.revolutions, self.count)
+
+    @property
+    def output_work(self) -> Number:
+        """Work in J per cycle of all loads on the output, negative where the machine moves them."""
+        work: Number = 0.0 if self.resistance_work is None else self.resistance_work
+        return work if self.load is None else work + self.load.work
+
+    @cached_property
+    def load_drives(self) -> Truth:
+        """Whether the loads on the output do more work on it than they take, as a load that is lowered."""
+        drives: Truth = self.output_work > 0
+        return drives
+
     @property
     def drives(self) -> Truth:
-        """Whether any piston drives."""
-        return any_of(self.driving)
+        """Whether any piston drives, or the load on the output."""
+        return any_of((self.load_drives, *self.driving))
 
     @cached_property
     def driven(self) -> Truth:
-        """Whether a piston is driven, its indicated work being negative, or the output works against a resistance."""
-        resisted = self.resistance_work is not None and self.resistance_work != 0
-        return any_of((resisted, *self.pumping))
+        """Whether a piston is driven, its indicated work being negative, or the output works against a load."""
+        return any_of((self.output_work < 0, *self.pumping))
 
     # friction
 
@@ -328,7 +375,9 @@ def _or_none_at_all(coefficient: Number | None) -> Number:
 
 def _moment_arm(f: Number | None, diameter: Number | None) -> Number:
     """Return f d/2 in m, the moment of friction over the load; 0 where one of both is not given."""
-    return 0.0 if f is None or diameter is None else f * diameter / 2
+    if f is None or diameter is None:
+        return 0.0
+    return f * diameter / 2
 
 
 def any_of(conditions: Iterable[Truth]) -> Truth:

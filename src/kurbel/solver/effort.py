@@ -29,7 +29,7 @@ from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State, reduced_inertia
 
 if TYPE_CHECKING:
-    from kurbel.machine.turning import KnownDiagram
+    from kurbel.machine.shaft_side import KnownDiagram
 
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
@@ -111,7 +111,9 @@ class TurningEffort:
 
     def result(self, values: Array) -> Any:
         """Return values (machines,), nan for refused machines; for one machine a float."""
-        return float(values[0]) if self.count is None else np.where(self.refused, np.nan, values)
+        if self.count is None:
+            return float(values[0])
+        return np.where(self.refused, np.nan, values)
 
     @cached_property
     def pieces(self) -> Pieces:
@@ -164,9 +166,11 @@ class TurningEffort:
             values = source.filled(torque(cylinders[0].samples)) * source.of(factor)
             size = size + len(cylinders) * source.largest(values)
             for cylinder in cylinders:
-                summed = summed + pieces.carried(values, source, position(cylinder))
+                summed = summed + pieces.resampled(values, source, position(cylinder))
         is_left = unless_cancelled(pieces.largest(summed), size, _CANCELLED) != 0
-        return summed if is_left.all() else np.where(pieces.of(is_left), summed, 0.0)
+        if is_left.all():
+            return summed
+        return np.where(pieces.of(is_left), summed, 0.0)
 
     def at(
         self,
@@ -189,7 +193,9 @@ class TurningEffort:
     @cached_property
     def given(self) -> Array | None:
         """The effort in N m that is known from elsewhere, without losses; None where cylinders give it."""
-        return _torque_on(self.machine.effort, self.pieces) if self.machine.effort else None
+        if not self.machine.effort:
+            return None
+        return _torque_on(self.machine.effort, self.pieces)
 
     @cached_property
     def drives(self) -> Truth:
@@ -220,7 +226,7 @@ class TurningEffort:
         factor = where(drive.drives & drive.driven, self.machine.efficiency - 1.0, 0.0)
         if not some(factor != 0):
             return []
-        return [Term(factor, group, lambda state: state.P_driving * state.slope)]
+        return [Term(factor, group, lambda state: state.driving_force * state.slope)]
 
     @cached_property
     def terms(self) -> list[Term]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
+from itertools import chain
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -61,6 +62,17 @@ class Figure(NamedTuple):
         where = "" if self.degrees is None else f" at {self.degrees:.2f}°"
         return f"{numbers} {self.quantity.marked(unit)}".rstrip() + where
 
+    def __repr__(self) -> str:
+        """Return it with its id, in SI.
+
+        >>> Figure(10000.0, "N", 90.0, Quantity("T_max", "T_max", "force", "Largest tangential force"))
+        <T_max = 10000 N at 90°>
+        """
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        numbers = ", ".join(f"{value:.9g}" for value in values)
+        where = "" if self.degrees is None else f" at {self.degrees:.6g}°"
+        return f"<{self.quantity.id} = {numbers} {self.unit}".rstrip() + f"{where}>"
+
 
 class NotebookView:
     """How a notebook shows results; `kurbel.notebook` sets it, since the solver may not import tables and pictures."""
@@ -68,7 +80,9 @@ class NotebookView:
     as_html: ClassVar[Of[str] | None] = None
 
     def _repr_html_(self) -> str | None:
-        return NotebookView.as_html(self) if NotebookView.as_html else None
+        if not NotebookView.as_html:
+            return None
+        return NotebookView.as_html(self)
 
 
 # columns
@@ -87,6 +101,10 @@ class AtAngles:
                 for row in item.rows:
                     setattr(cls, row.quantity.id, property(row.of, doc=row.quantity.text))
 
+    def __repr__(self) -> str:
+        ids = ", ".join(f".{id}" for id in list(self.rows)[:4])
+        return f"<kurbel columns at crank angles: {ids}, … in SI>"
+
     @property
     def rows(self) -> Mapping[str, QuantityRow]:
         """The rows of its columns, by id."""
@@ -95,7 +113,9 @@ class AtAngles:
     def __getitem__(self, id: str) -> Any:
         """Return a column by its id; None for one that there is not."""
         row = self.rows.get(id)
-        return None if row is None else row.of(self)
+        if row is None:
+            return None
+        return row.of(self)
 
 
 _COLUMN_ROWS: dict[tuple[type, tuple[Offer, ...]], Mapping[str, QuantityRow]] = {}
@@ -115,7 +135,7 @@ def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mappin
     rows += (QuantityRow(offer.quantity, offer.of, offer.unless) for offer in offers)
 
     # the angle is a column of every command that has another
-    commands = dict.fromkeys(word for row in rows for word in row.quantity.commands)
+    commands = dict.fromkeys(chain.from_iterable(row.quantity.commands for row in rows))
     phi = QuantityRow(PHI._replace(commands=tuple(commands)), lambda state: state.phi)
     return _COLUMN_ROWS.setdefault((state, offers), _in_order([phi, *rows], state))
 
@@ -201,7 +221,9 @@ class PartResults(Computed[V]):
 
         def of_part(function: Formula, results: object) -> Any:
             part = self.__get__(results)
-            return None if part is None else function(part)
+            if part is None:
+                return None
+            return function(part)
 
         for row in rows:
             unless = self.unless
@@ -238,7 +260,9 @@ class ExtremesOfColumns:
 
         def extreme(column: str, end: str, results: Any) -> Extreme | None:
             extremes = results.extremes_of(column)
-            return None if extremes is None else self.ENDS[end](extremes)
+            if extremes is None:
+                return None
+            return self.ENDS[end](extremes)
 
         def repeats(column: str, end: str, results: Any) -> bool:
             # the largest magnitude is that of the largest or the smallest value
@@ -439,7 +463,9 @@ def result_rows(
 
 def result(values: Array, count: int | None) -> Any:
     """Return values (machines,) as they are for many machines, and as a float for one, whose count is None."""
-    return float(values[0]) if count is None else values
+    if count is not None:
+        return values
+    return float(values[0])
 
 
 def crank_angles(degrees: object) -> Array:

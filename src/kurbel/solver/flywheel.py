@@ -22,21 +22,19 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Unsettled
-from kurbel.numerics.extreme import Extreme, Extremes
+from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.quantity import Computed, Heading, key_value, value
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, part
-from kurbel.solver.forces import CylinderForces
-from kurbel.solver.motion import every_dead_centre
 from kurbel.solver.piston_works import Brake
 from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
-from kurbel.solver.state import State
 from kurbel.solver.total_work import TotalWork
 
 if TYPE_CHECKING:
     from kurbel.solver.chapters.coupling import CouplingTorque, ElasticCoupling
+
 
 RIGID_ABOVE = 100.0
 """Natural order above which a coupling counts as rigid: it amplifies the first harmonics by no more than 1 in 10⁴."""
@@ -44,6 +42,8 @@ _MISSED = 1e-3
 """Relative deviation from the required δ above which there is a warning."""
 _LARGEST_EXPONENT = 709.7
 """exp of it is just below the largest float."""
+
+
 _DOUBLINGS, _TRIALS = 30, 20
 """Largest numbers of doublings in the search for a flywheel that turns, and of secant steps for one with a given δ."""
 _CLOSE = 1e-13
@@ -113,7 +113,9 @@ class TurningState(AtAngles):
 
     def __getitem__(self, id: str) -> Array | None:
         """Return a column by its id, or the load `M_load` in N m at the nominal speed; None for another name."""
-        return self.course(id) if id == "M_load" else super().__getitem__(id)
+        if id == "M_load":
+            return self.course(id)
+        return super().__getitem__(id)
 
     def course(self, id: str) -> Array | None:
         """Return a quantity of `MachineTurning.samples_of` at the angles, (n,); None for what is left out."""
@@ -129,7 +131,7 @@ class MachineTurning(Results):
 
     Attributes are named by the ids of the key values, in SI; None where the machine does not have one. Forces T are
     referred to the radius of crank 1. Key values of many machines are arrays (machines,), nan where a machine has none.
-    turns: a speed is given that is not 0. Raises UsageError where no torque acts, NoSolutionError where the machine
+    has_speed: a speed is given that is not 0. Raises UsageError where no torque acts, NoSolutionError where the machine
     cannot run.
     """
 
@@ -138,7 +140,7 @@ class MachineTurning(Results):
     def __init__(self, effort: TurningEffort) -> None:
         self.effort, self.machine, self.excess = effort, effort.machine, effort.excess
         self.omega = effort.omega
-        self.turns = effort.omega is not None and some(effort.omega != 0)
+        self.has_speed = effort.omega is not None and some(effort.omega != 0)
         cylinders = self.machine.cylinders
         self.crank = cylinders[0].mechanism.crank if cylinders else None
         self._extremes: dict[str, Extremes | None] = {}
@@ -174,17 +176,25 @@ class MachineTurning(Results):
             case "M_load":
                 return effort.pieces, effort.load
             case "omega":
-                return None if self.speed is None else self.speed.omega
+                if self.speed is None:
+                    return None
+                return self.speed.omega
             case "alpha":
-                return None if self.speed is None else self.speed.alpha
+                if self.speed is None:
+                    return None
+                return self.speed.alpha
             case "M_coupling":
-                return None if self.coupled is None else self.coupled.torque
+                if self.coupled is None:
+                    return None
+                return self.coupled.torque
         return self._from_others(column)
 
     def _at_crank(self, torque: Array) -> tuple[Pieces, Array] | None:
         """Return the force of a torque at the radius of crank 1; None without a crank."""
         pieces = self.effort.pieces
-        return None if self.crank is None else (pieces, torque / pieces.of(self.crank))
+        if self.crank is None:
+            return None
+        return (pieces, torque / pieces.of(self.crank))
 
     def _from_others(self, column: str) -> tuple[Pieces, Array] | None:
         """Return a column that is computed from other columns, on pieces halved until it is a polynomial."""
@@ -212,7 +222,9 @@ class MachineTurning(Results):
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
         samples = self.samples_of(column)
-        return None if samples is None else where_is(*samples, value)
+        if samples is None:
+            return None
+        return where_is(*samples, value)
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
@@ -260,7 +272,7 @@ class MachineTurning(Results):
         "power",
         "Power at the shaft, mean torque times nominal angular velocity",
         lambda turning: (
-            turning.M_mean * turning.omega if turning.turns and turning.knows_mean else None
+            turning.M_mean * turning.omega if turning.has_speed and turning.knows_mean else None
         ),
     )
 
@@ -345,7 +357,9 @@ class MachineTurning(Results):
     @cached_property
     def summits(self) -> Extremes | None:
         """Largest and smallest excess work with their angles; None where the only machine has none."""
-        return self.excess.summits.each(self.effort.result)[0] if self.excess.torque.any() else None
+        if not self.excess.torque.any():
+            return None
+        return self.excess.summits.each(self.effort.result)[0]
 
     # flywheel
 
@@ -391,14 +405,16 @@ class MachineTurning(Results):
         "v_K",
         "velocity",
         "Rim speed at the mean diameter",
-        lambda turning: turning.rim.speed(turning.omega) if turning.rim and turning.turns else None,
+        lambda turning: (
+            turning.rim.speed(turning.omega) if turning.rim and turning.has_speed else None
+        ),
     )
     rim_stress = value(
         "σ_K",
         "stress",
         "Hoop stress of the rim, ρ v²",
         lambda turning: (
-            turning.rim.stress(turning.omega) if turning.rim and turning.turns else None
+            turning.rim.stress(turning.omega) if turning.rim and turning.has_speed else None
         ),
     )
 
@@ -411,7 +427,7 @@ class MachineTurning(Results):
 
     def textbook_inertia(self) -> Number | None:
         """Return ΔE/(δ ω²) in kg m², less the inertia beyond a rigid coupling; None without a required δ or a speed."""
-        if self._wanted is None or not self.turns:
+        if self._wanted is None or not self.has_speed:
             return None
         needed = self.excess.dE / (self._wanted * self.omega**2)
         return self.effort.result(np.maximum(needed - self._driven_inertia, 0.0))
@@ -432,7 +448,7 @@ class MachineTurning(Results):
 
         Raises NoSolutionError where the machine stalls.
         """
-        if self.J is None or not self.turns:
+        if self.J is None or not self.has_speed:
             return None
         try:
             return self._line(1.0 if self._needs_no_inertia else self.J)
@@ -443,7 +459,7 @@ class MachineTurning(Results):
     def delta_book(self) -> Number | None:
         """The same by the textbook formula, ΔE/(J ω²)."""
         inertia = (0.0 if self.J is None else self.J) + self._driven_inertia
-        if not self.turns or not some(inertia != 0):
+        if not self.has_speed or not some(inertia != 0):
             return None
         return self.dE / (where(inertia == 0, math.nan, inertia) * self.omega**2)
 
@@ -456,7 +472,9 @@ class MachineTurning(Results):
         if self.law is None or not self.speed:
             return None
         multiplier = np.exp(np.minimum(self.speed.growth, _LARGEST_EXPONENT))
-        return float(multiplier) if self.effort.count is None else multiplier
+        if self.effort.count is not None:
+            return multiplier
+        return float(multiplier)
 
     @property
     def load_ignored(self) -> bool:
@@ -551,7 +569,7 @@ class MachineTurning(Results):
         """Natural frequency of the coupled masses, relative to the angular velocity."""
         coupling = self.machine.coupling
         has_inertia = self._given is not None or self._wanted is not None
-        if coupling is None or not self.turns or not has_inertia:
+        if coupling is None or not self.has_speed or not has_inertia:
             return None
         flywheel = self._given
         if flywheel is None:
@@ -592,14 +610,16 @@ class MachineTurning(Results):
         """
         if self.machine.coupling is None or self.rigid:
             return None
-        return self.speed if isinstance(self.speed, _elastic_coupling()) else None
+        if not isinstance(self.speed, _elastic_coupling()):
+            return None
+        return self.speed
 
     # the required δ, compared with the speed line
 
     @cached_property
     def delta_needed(self) -> Any:
         """δ of the speed line with the flywheel J_δ; None where the machine stalls with it."""
-        if self.J_needed is None or not self.turns or self._needs_no_inertia:
+        if self.J_needed is None or not self.has_speed or self._needs_no_inertia:
             return None
         if self.is_the_needed:
             return self.speed and self.speed.delta
@@ -643,37 +663,3 @@ class MachineTurning(Results):
             if is_close:
                 return inertia - missed / slope
         return None
-
-
-class DeadCentre(Results):
-    """Key value of `kurbel flywheel` for a cylinder that drives a pump; cycle: of the machine in degrees."""
-
-    command = "flywheel"
-
-    def __init__(self, forces: CylinderForces, cycle: float) -> None:
-        self.forces, self._cycle = forces, cycle
-
-    @key_value("P_d + P_p", "force")
-    def P_dead_centre(self) -> Extreme | None:
-        """Force ahead of the pump at a dead centre, without inertia.
-
-        At the end of the stroke steam and pump both oppose the motion, and the parts before the pump must carry their
-        sum (R p. 613). None if the cylinder does not both drive and drive a pump.
-        """
-        forces, drive = self.forces, self.forces.drive
-        count = drive.count or 1
-        driving, driven = forces.work_driving, forces.work_driven
-        drives_a_pump = np.asarray(driving is not None and (driving > 0) & (driven < 0))
-        if not drives_a_pump.any():
-            return None
-
-        # just before and just after each dead centre
-        centres = every_dead_centre(drive.mechanism, count, drive.cycle)
-        angles = np.repeat(centres, 2, axis=1)
-        sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
-        machine = np.repeat(np.arange(count), angles.shape[1])
-        state = State.at(drive, angles.ravel(), sides.ravel(), machine)
-        values = state.P_gas.reshape(angles.shape)
-        largest = np.arange(count), np.abs(values).argmax(axis=1)
-        force = np.where(drives_a_pump, values[largest], np.nan)
-        return Extreme(forces.result(force), forces.result(np.mod(angles[largest], self._cycle)))

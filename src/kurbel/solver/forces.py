@@ -37,6 +37,7 @@ from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
 
 if TYPE_CHECKING:
+    from kurbel.solver.heat_release import HeatRelease
     from kurbel.solver.indicated import Indicated
     from kurbel.solver.valve import ValveGear
 
@@ -45,6 +46,12 @@ def _indicated() -> type[Indicated]:
     from kurbel.solver.indicated import Indicated
 
     return Indicated
+
+
+def _heat_release() -> type[HeatRelease]:
+    from kurbel.solver.heat_release import HeatRelease
+
+    return HeatRelease
 
 
 def _valve_gear() -> type[ValveGear]:
@@ -135,7 +142,8 @@ class CylinderForces(SampledCylinder, Results):
     def rows(self) -> Rows:
         """The rows that a machine with this mechanism may have, its pressures counted as in the machine file."""
         mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
-        of_ram = not cylinder.pistons and bool(cylinder.ram_force or mechanism.quick_return)
+        is_loaded = cylinder.ram_force is not None or cylinder.force is not None
+        of_ram = not cylinder.pistons and bool(is_loaded or mechanism.quick_return)
         absolute = bool(gas and gas.absolute)
         return _rows(
             mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, absolute, mechanism.guided, self.closed
@@ -165,7 +173,9 @@ class CylinderForces(SampledCylinder, Results):
     def valve_gear(self) -> ValveGear | None:
         """What the valve does."""
         cylinder = self.drive.cylinder
-        return _valve_gear()(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
+        if not cylinder.valve:
+            return None
+        return _valve_gear()(cylinder.valve, cylinder, self.motion)
 
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")
@@ -249,9 +259,21 @@ class CylinderForces(SampledCylinder, Results):
     resistance_work = value(
         "A_r", "energy", "Work per cycle of the resistance at the ram or rocker, negative"
     )
+    load_work = value(
+        "A_L",
+        "energy",
+        "Work per cycle of the load `force` on the output, negative where the machine moves it",
+    )
     power = value("N_i", "power", "Indicated power")
     mean_pressure = value("p_i", "pressure", "Mean indicated pressure of the cylinder's own piston")
 
+    p_rise_max = value(
+        "dp/dφ_max",
+        "pressure_rise",
+        "Largest rate of pressure rise, over 1 deg of crank angle",
+        lambda forces: forces.drive.own_gas.steepest if forces.drive.own_gas else None,
+        after="discharge_loss",
+    )
     V_clearance = value(
         "V_c", "volume", "Clearance volume of the head-end chamber", after="mean_pressure_exchange"
     )
@@ -264,6 +286,15 @@ class CylinderForces(SampledCylinder, Results):
         """Key values of the traces of the cylinder's own piston."""
         gas = self.drive.own_gas
         return _indicated()(gas) if gas and gas.has_trace else None
+
+    @part(
+        _heat_release,
+        there=lambda forces: bool(forces.drive.own_gas and forces.drive.own_gas.releases_heat),
+    )
+    def heat_release(self) -> HeatRelease | None:
+        """Key values of the heat release over the cylinder's own piston."""
+        gas = self.drive.own_gas
+        return _heat_release()(gas) if gas and gas.releases_heat else None
 
     @part(Brake)
     def brake(self) -> Brake | None:
@@ -407,7 +438,9 @@ class CylinderForces(SampledCylinder, Results):
             values = self.sampled(name)
             if values is not None:
                 loads[name] = values
-        return RodLoads(self.drive, self.pieces, loads) if loads else None
+        if not loads:
+            return None
+        return RodLoads(self.drive, self.pieces, loads)
 
     @shared
     def answers(self) -> dict[str, object]:
@@ -416,6 +449,7 @@ class CylinderForces(SampledCylinder, Results):
         answers = dict[str, object]()
         answers["m"] = drive.mass if drive.cylinder.masses else None
         answers["resistance_work"] = drive.resistance_work
+        answers["load_work"] = drive.load and drive.load.work
         if pistons:
             answers["A_head"] = pistons[0].head_area
             answers["A_crank"] = pistons[0].crank_area
@@ -461,10 +495,18 @@ class CylinderForces(SampledCylinder, Results):
 
     @property
     def no_compressor(self) -> bool:
-        """Whether rod loads are not shown: for engines, also motored four-stroke ones, and without a connecting rod."""
+        """Whether rod loads are not shown: those of API 618 are of compressors, and at a connecting rod.
+
+        An engine may be motored, and a pump and a ram are driven, too.
+        """
         if self.work is None or self.work >= 0:
             return True
-        return self.drive.revolutions > 1 or not self.mechanism.has_rod
+        drive = self.drive
+        if drive.revolutions > 1 or not self.mechanism.has_rod:
+            return True
+        if drive.machine.pump is not None or drive.cylinder.ram_force is not None:
+            return True
+        return not any(gas.work < 0 and gas.compresses_gas for gas in drive.gas)
 
     @property
     def open_at_crank_end(self) -> bool:
@@ -575,9 +617,9 @@ class CylinderForces(SampledCylinder, Results):
         """Work in J per cycle that reaches the shaft: indicated, less friction and that of the load on the output."""
         if not self.drive.has_force:
             return None
-        terms = (self.work, self.friction_work, self.resistance_work)
-        work, lost, resisted = (0.0 if term is None else term for term in terms)
-        return total(work, -lost, resisted)
+        work = 0.0 if self.work is None else self.work
+        lost = 0.0 if self.friction_work is None else self.friction_work
+        return total(work, -lost, self.drive.output_work)
 
     @shared
     def friction_works(self) -> dict[str, Any]:
@@ -681,4 +723,6 @@ def _rows(
         rows = rows.changed(Quantity.of_ram)
     elif absolute:
         rows = rows.changed(Quantity.absolute)
-    return rows if guided else rows.changed(Quantity.without_guide)
+    if guided:
+        return rows
+    return rows.changed(Quantity.without_guide)

@@ -17,7 +17,7 @@ import math
 from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, ClassVar, Literal, Union
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, Union
 
 import numpy as np
 
@@ -25,17 +25,19 @@ from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import CYCLES, within_cycle
 from kurbel.errors import UsageError
 from kurbel.machine.batch import changed, taken, varies
-from kurbel.machine.indicator import STROKES, Card, Chamber, Rectangle
+from kurbel.machine.indicator import STROKES, Card, Chamber, Rectangle, levels_of_strokes
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.arithmetic import some, spread, total
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import Extreme, largest
 from kurbel.numerics.pieces import Angles
 from kurbel.solver.figures import result
 
 if TYPE_CHECKING:
     from kurbel.machine.ideal_cards import IdealCard
+    from kurbel.solver.wiebe import WiebeHeat, WiebePressure
+    from kurbel.traces.heat import Released
     from kurbel.traces.pressure import TracePressure
 
 _NO_WIDTH = 1e-10
@@ -153,14 +155,38 @@ def _level_lines(rectangle: Rectangle, cycle: float, base: float) -> Iterator[Pr
 # over the crank angle
 
 
+class HeatOfEnd(NamedTuple):
+    """The heat that is released in one chamber, the chamber, and its indicated work in J per cycle."""
+
+    released: Released | WiebeHeat
+    setting: Setting
+    work: Number
+
+    def burnt(self, degrees: Array, machine: Indices | None = None) -> Array:
+        """Return the burnt share x_b at crank angles in degrees of these machines."""
+        return self.released.burnt_at(self._after(degrees, machine), machine)
+
+    def rate(self, degrees: Array, machine: Indices | None = None) -> Array:
+        """Return the heat in J that is released over the degree around crank angles of these machines."""
+        return self.released.rate_at(self._after(degrees, machine), machine)
+
+    def _after(self, degrees: Array, machine: Indices | None) -> Array:
+        """Return the degrees from the firing dead centre."""
+        setting = self.setting if machine is None else taken(self.setting, machine)
+        return setting.after_dead_centre(degrees)
+
+
 class CardPressure:
     """Gauge pressure in one chamber from a process over the stroke, or in those of many machines.
 
-    traced: it is no trace. mirrored: the pressure at the other end, which has the same process. steep: whether a
-    line is so steep that the rounding of z counts; starts: where lines begin.
+    traced: it is no trace; releases: nor has it a heat release; by_stroke: it follows the stroke. mirrored: the
+    pressure at the other end, which has the same process. steep: whether a line is so steep that the rounding of z
+    counts; starts: where lines begin.
     """
 
     traced: ClassVar[Literal[False]] = False
+    releases: ClassVar[bool] = False
+    by_stroke: ClassVar[Literal[True]] = True
 
     def __init__(
         self,
@@ -196,11 +222,17 @@ class CardPressure:
         machine = np.repeat(np.arange(machines), len(z)) if alike else self._machine
         self.starts = Angles(machine, np.tile(self._begins, machines))
 
+    def released(self, area: Number) -> None:
+        """Return the heat released over a piston of this area: none."""
+        return None
+
     @property
     def area(self) -> Number:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
         areas = np.array([process.area for process in self._processes])
-        return float(areas[0]) if len(areas) == 1 else areas[self._which]
+        if len(areas) == 1:
+            return float(areas[0])
+        return areas[self._which]
 
     @cached_property
     def highest(self) -> Extreme:
@@ -341,17 +373,25 @@ def _over_the_angle(
     return machine, np.stack((angles, angles[following], *lines[wide][order, 1:].T))
 
 
-Pressure = Union[CardPressure, "TracePressure"]
+Pressure = Union[CardPressure, "WiebePressure", "TracePressure"]
 
 
 def _pressure(
-    chamber: Chamber, setting: Setting, count: int | None, mirrored: CardPressure | None
+    chamber: Chamber,
+    setting: Setting,
+    area: Number,
+    count: int | None,
+    mirrored: CardPressure | None,
 ) -> Pressure:
-    """Return the pressure over the crank angle that a card or a trace shows."""
+    """Return the pressure over the crank angle that a card or a trace shows; area: of the piston in m²."""
     if chamber.traced:
         from kurbel.traces.pressure import TracePressure
 
         return TracePressure(chamber, setting)
+    if not chamber.by_stroke:
+        from kurbel.solver.wiebe import WiebePressure
+
+        return WiebePressure(chamber, setting, area, count)
     return CardPressure(chamber, setting, count, mirrored)
 
 
@@ -360,7 +400,7 @@ class PistonGas:
 
     head, crank: of the two ends, None for an end that is open to the ambient; ends: those that have pressures, with
     their areas in m². cycle: degrees of its own cycle, which is run through `repeats` times in that of the cylinder.
-    count: of machines, None for one. base: in Pa, to be subtracted from those of the file for gauge pressures;
+    count: of machines, None for one. number: of the piston in the cylinder. base: in Pa, to be subtracted from those of the file for gauge pressures;
     swept_volume: in m³, in the chambers that have pressures; starts: where each pressure bends or jumps in the
     cylinder's cycle; areas: at head end and crank end in m², of a piston by a lever reduced to the crosshead, turned:
     whether it moves against that; clearance_volumes: smallest volumes in m³ of head end and crank end, 0 where one is
@@ -375,6 +415,7 @@ class PistonGas:
         ambient: float,
         repeats: int,
         count: int | None,
+        number: int = 0,
     ) -> None:
         indicator = piston.indicator
         assert indicator is not None
@@ -388,25 +429,27 @@ class PistonGas:
             head_end=self.turned, mirrored=indicator.crank_end is indicator.head_end
         )
         self.piston, self.stroke, self.repeats = piston, mechanism.stroke, repeats
+        self.number = number
         self.absolute, self.base = indicator.absolute, at_head.base
+        self.role = indicator.role
+        head_area: Number = piston.head_area * abs(ratio)
+        crank_area: Number = piston.crank_area * abs(ratio)
+        self.areas = head_area, crank_area
         self.head: Pressure | None = None
         self.crank: Pressure | None = None
         if indicator.head_end is not None:
-            self.head = _pressure(indicator.head_end, at_head, count, None)
+            self.head = _pressure(indicator.head_end, at_head, head_area, count, None)
         if indicator.crank_end is not None:
             same = self.head if at_crank.mirrored and isinstance(self.head, CardPressure) else None
-            self.crank = _pressure(indicator.crank_end, at_crank, count, same)
+            self.crank = _pressure(indicator.crank_end, at_crank, crank_area, count, same)
 
-        self.areas: tuple[Number, Number] = (
-            piston.head_area * abs(ratio),
-            piston.crank_area * abs(ratio),
-        )
         self.ends: list[tuple[Pressure, Number]] = []
         for pressure, area in zip((self.head, self.crank), self.areas):
             if pressure is not None:
                 self.ends.append((pressure, area))
         self._traces = [(end, area) for end, area in self.ends if end.traced]
         self.has_trace = bool(self._traces)
+        self.releases_heat = any(end.releases for end, _ in self.ends)
         self.swept_volume: Number = sum(area for _, area in self.ends) * self.stroke
         self.starts = []
         for turn in cycle * np.arange(repeats):
@@ -417,6 +460,21 @@ class PistonGas:
             clearance = getattr(chamber, "clearance", None)
             volume = 0.0 if clearance is None else clearance * area * self.stroke
             self.clearance_volumes.append(volume)
+
+    @property
+    def compresses_gas(self) -> bool:
+        """Whether the piston, if it is driven, compresses a gas: by its card, its role, or the shape of its pressures.
+
+        A liquid has one pressure on each stroke; a combustion engine and a steam engine may be driven, too.
+        """
+        chambers = list(self.piston.chambers.values())
+        if any(chamber.compresses for chamber in chambers):
+            return True
+        if self.role is not None:
+            return self.role == "compressor"
+        if any(chamber.burns or chamber.by_steam for chamber in chambers):
+            return False
+        return any(levels_of_strokes(chamber) is None for chamber in chambers)
 
     @cached_property
     def works(self) -> tuple[Number, ...]:
@@ -437,6 +495,21 @@ class PistonGas:
         work = sum(area * end.area for end, area in self._traces)
         by_angle = sum(area * end.area_by_angle for end, area in self._traces)
         return distance * work, distance * by_angle
+
+    @cached_property
+    def steepest(self) -> Extreme | None:
+        """Largest rise of pressure in Pa per degree at an end where it is over the crank angle; None without any."""
+        rises = [end.steepest for end, _ in self.ends if not end.by_stroke]
+        return largest(*rises) if rises else None
+
+    @cached_property
+    def heat(self) -> HeatOfEnd | None:
+        """The heat release of the first end that has one."""
+        for end, area in self.ends:
+            released = end.released(area)
+            if released is not None:
+                return HeatOfEnd(released, end.setting, area * self.stroke * end.area)
+        return None
 
     @property
     def noise(self) -> float:

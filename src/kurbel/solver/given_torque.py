@@ -8,7 +8,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import unit_vector
-from kurbel.machine.turning import Harmonics, KnownDiagram, Swing
+from kurbel.machine.shaft_side import Harmonics, KnownDiagram, Swing
 from kurbel.numerics.pieces import Pieces
 
 

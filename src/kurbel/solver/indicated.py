@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.crank_angle import within_cycle
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity, value
 from kurbel.solver.figures import Results
 from kurbel.solver.gas import PistonGas
-from kurbel.traces.correct import by_angle
 from kurbel.traces.pressure import TracePressure
 from kurbel.traces.reading import COMPRESSOR, TraceReading
 from kurbel.traces.valves import valve_figures
-
-if TYPE_CHECKING:
-    from kurbel.traces.heat import HeatLaw, Released
 
 
 class Cycles(NamedTuple):
@@ -82,7 +77,6 @@ class Indicated(Results):
     discharge_loss = value(
         "p_v,d", "pressure", "Mean pressure lost between cylinder and discharge line"
     )
-    p_rise_max = value("dp/dφ_max", "pressure_rise", "Largest rate of pressure rise, per degree")
     cycles_measured = value("Z", "ratio", "Number of measured cycles averaged for the forces")
     mean_pressure_std = value("s_p_i", "pressure", "Standard deviation of p_i over the cycles")
     mean_pressure_cov = value(
@@ -98,18 +92,6 @@ class Indicated(Results):
     cycle_worst = value(
         "Z_min", "ratio", "Number of the cycle with the smallest p_i, counted from 1"
     )
-
-    heat_released = value("Q_b", "energy", "Heat released by the trace, less what the walls take")
-    phi_burnt_05 = value(
-        "φ_05", "angle", "Angle after the firing dead centre at which 5 % of the heat is released"
-    )
-    phi_burnt_50 = value(
-        "φ_50", "angle", "Angle after the firing dead centre at which half the heat is released"
-    )
-    phi_burnt_90 = value(
-        "φ_90", "angle", "Angle after the firing dead centre at which 90 % of the heat is released"
-    )
-    heat_rate_max = value("dQ_max", "energy", "Largest heat released over 1 deg of crank angle")
 
     def __init__(self, gas: PistonGas) -> None:
         self.gas = gas
@@ -131,8 +113,7 @@ class Indicated(Results):
             lost = float(unless_cancelled(terms.sum(), np.abs(terms).sum()))
             answers["mean_pressure_exchange"] = lost
             answers["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - lost
-        answers["p_rise_max"] = max(trace.steepest for trace in self._traces)
-        return answers | self._of_lines() | self._of_heat() | self._scatter()
+        return answers | self._of_lines() | self._scatter()
 
     def _of_lines(self) -> dict[str, object]:
         """Return the key values of compression and expansion: of the head end first, and of a compressor's valves."""
@@ -163,47 +144,6 @@ class Indicated(Results):
             if None not in losses:
                 figures[name] = float(np.dot(losses, shares))
         return figures
-
-    def _of_heat(self) -> dict[str, object]:
-        """Return the key values of the heat release, of the first end whose trace has one."""
-        for pressure in self._traces:
-            if pressure.trace.heat is None:
-                continue
-            released = self.released(pressure, pressure.trace.heat)
-            if released is None:
-                continue
-            rate, after = released.fastest
-            degrees = within_cycle(
-                np.array([after + pressure.setting.own_dead_centre]), pressure.setting.cycle
-            )
-            return {
-                "heat_released": released.total,
-                "phi_burnt_05": released.angle_at(0.05),
-                "phi_burnt_50": released.angle_at(0.5),
-                "phi_burnt_90": released.angle_at(0.9),
-                "heat_rate_max": Extreme(rate, float(degrees[0])),
-            }
-        return {}
-
-    def released(self, pressure: TracePressure, law: HeatLaw) -> Released | None:
-        """Return the heat that the mean cycle in a chamber releases."""
-        trace = pressure.trace
-        setting = pressure.setting
-        clearance = trace.clearance or 0.0
-        area = self.gas.piston.crank_area
-        if setting.head_end:
-            area = self.gas.piston.head_area
-        stroke_volume = area * setting.mechanism.stroke
-
-        # the closing sample is the first one again
-        after = trace.from_dead_centre(setting)[:-1]
-        order = np.argsort(after, kind="stable")
-        after = after[order]
-        absolute = pressure.pressures[:-1][order] + setting.lift
-        volumes = (setting.stroke_fraction(after) + clearance) * stroke_volume
-        degrees = after + setting.own_dead_centre
-        per_radian = by_angle(setting, setting.mechanism.slope, degrees) * stroke_volume
-        return law.released(after, absolute, volumes, np.radians(per_radian))
 
     def _scatter(self) -> dict[str, object]:
         """Return the key values of several cycles."""

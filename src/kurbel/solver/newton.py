@@ -24,7 +24,7 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.solver.cycle import SampledCylinder
 from kurbel.solver.drive import Drive
-from kurbel.solver.state import State, on_crosshead_pin, on_pin, reduced_inertia
+from kurbel.solver.state import State, crank_pin_force, crosshead_pin_force, reduced_inertia
 
 _ANGLES: Array = np.mod(np.arange(1.0, 8.0) * 0.6180339887, 1.0)
 """Angles as fractions of the cycle, by the golden section, so that they avoid dead centres and corners of cards."""
@@ -81,15 +81,16 @@ def residual(cylinder: SampledCylinder) -> float | None:
 
     # piston, rod and crosshead, toward the shaft: gas + weight − friction − rod − m z̈
     parts = drive.cylinder.masses.parts if drive.cylinder.masses else 0.0
-    gas_and_ram = sum(force for force in (state.P_gas, state.P_ram) if force is not None)
+    applied = (state.P_gas, state.P_ram, state.P_load)
+    gas_and_loads = sum(force for force in applied if force is not None)
     side = 0.0 if state.N is None else np.abs(state.N)
     rubs = state.direction * (state.steady_friction + drive.crosshead_friction * side)
-    push = state.along_rod
+    push = state.along_stroke
     moved = -mechanism.crank * state.angle.cos
     if motion:
-        push = on_crosshead_pin(state).D
+        push = crosshead_pin_force(state).D
         moved = motion.crosshead.real
-    left = [gas_and_ram - gravity.real * parts - rubs - push + parts * moved * square]
+    left = [gas_and_loads - gravity.real * parts - rubs - push + parts * moved * square]
     # the shaft: T R less the moments in crank pin and journals less M, over R
     lost = state.rubbing.at_crank + state.rubbing.journals if state.rubbing else 0.0
     left.append(state.tangential_at_pin - (lost + state.M) / mechanism.crank)
@@ -139,7 +140,9 @@ def _energy(rod: _Rod, state: State, motion: _Motion) -> float:
     centre = motion.crosshead_speed * (1 - rod.centre) + motion.pin_speed * rod.centre
     J = J + rod.mass * np.abs(centre) ** 2 + rod.inertia * motion.turn**2
     size = float(np.max(J))
-    return float(np.abs(J - reduced_inertia(state)).max()) / size if size else 0.0
+    if not size:
+        return 0.0
+    return float(np.abs(J - reduced_inertia(state)).max()) / size
 
 
 def _of_rod(
@@ -147,7 +150,7 @@ def _of_rod(
 ) -> list[Array]:
     """Return the residuals of the forces on the rod, of their moments over L, and of S along it; square: ω² in 1/s²."""
     arm, angle, L = motion.arm, state.angle, state.drive.mechanism.rod_length
-    at_crosshead, at_pin = on_crosshead_pin(state), on_pin(state)
+    at_crosshead, at_pin = crosshead_pin_force(state), crank_pin_force(state)
     F = -at_crosshead.D + 1j * at_crosshead.T
     K = (angle.cos + 1j * angle.sin) * (-at_pin.D + 1j * at_pin.T)
 

@@ -424,7 +424,9 @@ def middle_of(machine: Machine) -> Any:
         return machine.moment_reference
     of_machines = np.broadcast_arrays(*positions)
     middle = (np.min(of_machines, axis=0) + np.max(of_machines, axis=0)) / 2
-    return middle if np.ndim(middle) else float(middle)
+    if np.ndim(middle):
+        return middle
+    return float(middle)
 
 
 def wheels_of(machine: Machine) -> tuple[Any, ...]:

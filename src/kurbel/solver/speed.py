@@ -56,12 +56,16 @@ class SpeedLaw(NamedTuple):
         if load is None or load.diagram or not effort.mean.any():
             return None
         is_constant = load.slip is None and every(load.power == 0)
-        return None if is_constant else cls(effort.mean, load.power, load.slip)
+        if is_constant:
+            return None
+        return cls(effort.mean, load.power, load.slip)
 
     @property
     def steepness(self) -> Array:
         """ω_n dM_load/dω at the nominal speed in N m, (n,)."""
-        return self.mean * self.power if self.slip is None else np.abs(self.mean) / self.slip
+        if self.slip is None:
+            return self.mean * self.power
+        return np.abs(self.mean) / self.slip
 
     def rise(self, ratio: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return the load beyond that at the nominal speed in N m, and its derivative by r, at r (…, pieces)."""
@@ -191,14 +195,14 @@ class SpeedEquation:
 
     def known(self, pieces: Pieces) -> Array:
         """Return M − M_load at uniform rotation in N m, and the kinetic energy ½ J(φ) ω_n² in J."""
-        excess, moving = pieces.carried(self._course, self._effort.pieces)
+        excess, moving = pieces.resampled(self._course, self._effort.pieces)
         inertia = moving + pieces.of(self.flywheel)
         return np.stack((excess, inertia * pieces.of(self._effort.omega**2 / 2)))
 
-    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
+    def rate(self, samples: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return z′ and its derivative by z."""
         assert self._law
-        excess, energy = known
+        excess, energy = samples
         rise, slope = self._law.rise(y[0] / energy, pieces)
         return (excess - rise)[None], (-slope / energy)[None, None]
 
@@ -243,7 +247,7 @@ class RigidLine(SpeedLine):
         """
 
         def sample(pieces: Pieces) -> Array:
-            z = pieces.carried(energy, source) + pieces.of(constant)
+            z = pieces.resampled(energy, source) + pieces.of(constant)
             ratio = np.maximum(z / self._equation.known(pieces)[1], _STILL)
             u = ratio / (1 + np.sqrt(1 + ratio))
             return np.stack((u, -u / (1 + u)))
@@ -258,7 +262,7 @@ class RigidLine(SpeedLine):
         """
         pieces, E = effort.pieces, effort.true_excess.E
         while True:
-            excess = pieces.carried(E, effort.pieces)
+            excess = pieces.resampled(E, effort.pieces)
             _, energy = self._equation.known(pieces)
             missing = (_SLOWEST**2 - 1) * energy - excess
             least = np.maximum.reduceat(missing.max(axis=0), pieces.first)
@@ -290,10 +294,10 @@ class RigidLine(SpeedLine):
         effort = self.effort
 
         def sample(pieces: Pieces) -> Array:
-            u = pieces.carried(self.u, self.pieces)
+            u = pieces.resampled(self.u, self.pieces)
             excess, energy = self._equation.known(pieces)
             ratio = u * (2 + u)
-            torque = pieces.carried(effort.inertia_torque, effort.pieces)
+            torque = pieces.resampled(effort.inertia_torque, effort.pieces)
             rise = self.law.rise(ratio, pieces)[0] if self.law else 0.0
             slope = (excess - rise + ratio * torque) / energy  # dr/dφ
             return (slope * pieces.of(effort.omega**2 / 2))[None]
@@ -305,8 +309,8 @@ class RigidLine(SpeedLine):
         """Return samples of J₂ α + M_load in N m: what passes to the load and an inertia J₂ in kg m² that it drives."""
         pieces, alpha = self.alpha
         effort = self.effort
-        load = pieces.carried(effort.load, effort.pieces)
+        load = pieces.resampled(effort.load, effort.pieces)
         if self.law:
-            u = pieces.carried(self.u, self.pieces)
+            u = pieces.resampled(self.u, self.pieces)
             load = load + self.law.rise(u * (2 + u), pieces)[0]
         return pieces, pieces.of(inertia) * alpha + load

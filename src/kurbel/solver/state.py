@@ -3,7 +3,7 @@
 Forces on the crosshead on the outstroke, 0 < φ < 180°; cylinder on the left, shaft on the right, crank pin above the
 stroke line:
 
-            ↓ G, S sin ψ        P  gas, inertia, weight, load on a ram;  G  weight across the stroke line
+            ↓ G, S sin ψ        P  gas, inertia, weight, loads;  G  weight across the stroke line
     P →  ───O───  ← S cos ψ     along it   S cos ψ = P − friction of crosshead, f |N|, and rings
             ↑ N   ← friction    across it  N = S sin ψ + G, from the lower guide, positive as drawn
 
@@ -35,7 +35,7 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.numerics.arithmetic import some, total
+from kurbel.numerics.arithmetic import some, spread, total
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import QuantityRow, column, value
@@ -171,10 +171,27 @@ class State(Chambers):
         "Force opposing the motion of a ram",
         lambda state: state.resistance if state.mechanism.slides else None,
     )
+
+    @column(
+        "P_L",
+        "force",
+        extremes=("forces",),
+        called="load on what slides or swings",
+    )
+    def P_load(self) -> Array | None:
+        """Load `force` on what slides, positive as P is; on what swings at its lever, positive where θ rises."""
+        load = self.drive.load
+        if load is None:
+            return None
+        force = load.without_points(self.displacement, self.drive.index)
+        if load.profile is not None:
+            force = force + self.pressure(load.profile)
+        return self.filled(force)
+
     P = value(
         "P",
         "force",
-        "Force along the stroke line: gas, inertia, weight and ram resistance",
+        "Force along the stroke line: gas, inertia, weight and loads",
         lambda state: _sum(state.P_inertia, state.P_start),
         extremes=("forces",),
         called="piston force",
@@ -198,7 +215,7 @@ class State(Chambers):
         "P_0",
         "force",
         "Force along the stroke line without inertia",
-        lambda state: _sum(_sum(state.P_gas, state.P_weight), state.P_ram),
+        lambda state: _sum(_sum(state.P_gas, state.P_weight), state.sliding_load),
         commands=(),
         extremes=("forces",),
         called="piston force without inertia: starting and slow running",
@@ -213,6 +230,28 @@ class State(Chambers):
         working_direction = 1.0 if self.mechanism.works_outward else -1.0
         works = self.direction == working_direction
         return self.filled(-self.direction * np.where(works, resistance.work, resistance.back))
+
+    @property
+    def output_load(self) -> Number | None:
+        """All loads on the output in N, or in N m where it swings or turns; positive where x or θ rises."""
+        load = self.drive.load
+        if load is None:
+            return self.resistance
+        return _sum(self.resistance, self.P_load * spread(load.lever, self.drive.index))
+
+    @property
+    def sliding_load(self) -> Number | None:
+        """All loads in N on what slides along the stroke line; None where the output swings or turns."""
+        return self.output_load if self.mechanism.slides else None
+
+    @property
+    def driving_force(self) -> Number:
+        """Force in N (moment in N m) at the output of pistons that drive, and of loads that drive."""
+        drive = self.drive
+        force: Number = 0.0 if self.P_driving is None else self.P_driving
+        if some(drive.load_drives):
+            force = force + self.output_load * spread(drive.load_drives, drive.index)
+        return force
 
     def rod_load(self, crosshead: bool = True) -> Array | None:
         """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft (API 618).
@@ -241,7 +280,7 @@ class State(Chambers):
         """
         if self.P is None or self.rod_angle is None:
             return None
-        return self.along_rod / self.rod_angle[1] - self._rod_side * self.rod_angle[0]
+        return self.along_stroke / self.rod_angle[1] - self._rod_side * self.rod_angle[0]
 
     @column("S_H", "force", extremes=("forces",), called="force along the rod at the crosshead pin")
     def S_crosshead(self) -> Array | None:
@@ -251,7 +290,7 @@ class State(Chambers):
         """
         if self.P is None or self.drive.rod is None:
             return None
-        push, lift = on_crosshead_pin(self)
+        push, lift = crosshead_pin_force(self)
         return push * self.rod_angle[1] + lift * self.rod_angle[0]
 
     @column("S_Z", "force", extremes=("forces",), called="force along the rod at the crank pin")
@@ -283,7 +322,7 @@ class State(Chambers):
         return couple / (self.rod_angle[1] * self.mechanism.rod_length)
 
     @cached_property
-    def _forward(self) -> Array:
+    def _forward_sign(self) -> Array:
         """Sign of cos φ, +1 from 270° to 90°: there the pin moves toward its side of the outstroke."""
         turned = np.mod(self.within, 360.0)
         return np.where((turned < 90.0) | (turned >= 270.0), 1.0, -1.0)
@@ -295,9 +334,11 @@ class State(Chambers):
             if not self.drive.yoke_rubs:
                 return 0.0
             block, _ = self.drive.yoke_friction
-            return np.abs(self.along_rod) * self._forward * block
+            return np.abs(self.along_stroke) * self._forward_sign * block
         rubbing = self.rubbing
-        return 0.0 if rubbing is None else self._side(rubbing.at_crank + rubbing.at_crosshead)
+        if rubbing is None:
+            return 0.0
+        return self._side(rubbing.at_crank + rubbing.at_crosshead)
 
     @cached_property
     def _rod_side(self) -> Number:
@@ -317,7 +358,7 @@ class State(Chambers):
         friction = drive.pin_friction if self.pin_friction else None
         if friction is None or self.P is None:
             return None
-        pin = on_pin(self.without_pin_friction)
+        pin = crank_pin_force(self.without_pin_friction)
         bearings: Number = np.hypot(*pin)
         if friction.line is not None and some(friction.journals != 0):
             names = [cylinder.name for cylinder in drive.machine.cylinders]
@@ -332,8 +373,8 @@ class State(Chambers):
         at_crank = np.hypot(*pin) * friction.crank_pin
         at_crosshead: Number = 0.0
         if self.rod_angle is not None:  # the rod turns by −dψ, which friction opposes
-            load = np.hypot(*on_crosshead_pin(self.without_pin_friction))
-            at_crosshead = load * (self._forward * friction.crosshead_pin)
+            load = np.hypot(*crosshead_pin_force(self.without_pin_friction))
+            at_crosshead = load * (self._forward_sign * friction.crosshead_pin)
         return FrictionMoments(at_crank, at_crosshead, bearings * friction.journals)
 
     # link rods
@@ -367,8 +408,8 @@ class State(Chambers):
     @property
     def knuckle_momentum_rate(self) -> Number:
         """Rate m_k ω² Im(z* z″) in N m of the moment of momentum of that mass about the shaft."""
-        place = self.linked_piston.knuckle_place(self.angle)
-        rate: Number = -(np.conj(place) * self._knuckle_inertia).imag
+        knuckle = self.linked_piston.knuckle_place(self.angle)
+        rate: Number = -(np.conj(knuckle) * self._knuckle_inertia).imag
         return rate
 
     @cached_property
@@ -377,7 +418,7 @@ class State(Chambers):
         if self.P is None:
             return None
         sin_psi, cos_psi = self.rod_angle
-        return self._knuckle_inertia - self.along_rod * (1 - 1j * (sin_psi / cos_psi))
+        return self._knuckle_inertia - self.along_stroke * (1 - 1j * (sin_psi / cos_psi))
 
     @property
     def knuckle_moment(self) -> Any:
@@ -389,7 +430,9 @@ class State(Chambers):
     @cached_property
     def _links_side(self) -> Number:
         """Side force ΣM_K/(L cos ψ) in N that the link rods take from the guide of a master; 0 without them."""
-        return self._side(self._moment_of_links) if self.drive.links else 0.0
+        if not self.drive.links:
+            return 0.0
+        return self._side(self._moment_of_links)
 
     @property
     def moment_on_master(self) -> Any:
@@ -398,7 +441,9 @@ class State(Chambers):
             return None
         if self.drive.cylinder.link_rod is not None:
             return self.knuckle_moment
-        return self._moment_of_links if self.drive.links else None
+        if not self.drive.links:
+            return None
+        return self._moment_of_links
 
     @cached_property
     def links(self) -> list[State]:
@@ -444,10 +489,12 @@ class State(Chambers):
     def after_steady_friction(self) -> Number:
         """Piston force P in N less the steady friction; acts on the crosshead."""
         steady = self.steady_friction
-        return self.P - self.direction * steady if some(steady != 0) else self.P
+        if some(steady != 0):
+            return self.P - self.direction * steady
+        return self.P
 
     @cached_property
-    def guide_sense(self) -> Number:
+    def guide_sign(self) -> Number:
         """Numerator of N: P sin ψ + G cos ψ in N, G: weight on the guide less side forces of couples."""
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
         return (
@@ -458,13 +505,13 @@ class State(Chambers):
     @cached_property
     def guide_side(self) -> Array:
         """Sign of N, +1 for N = 0: one for each angle, or for each piece at the nodes of pieces."""
-        sense = self.guide_sense
+        sense = self.guide_sign
         if np.ndim(self.angle.sin) > 1:
             sense = rule(len(self.phi)).weights @ sense
         elif self.within is not self.phi:
             sense = State(
                 self.drive, CrankAngle.of(self.within), self.within, self.pin_friction
-            ).guide_sense
+            ).guide_sign
         return np.where(sense >= 0, 1.0, -1.0)
 
     @property
@@ -509,7 +556,7 @@ class State(Chambers):
             if drive.index is None:
                 raise NoSolutionError(drive.locks(float(self.phi[is_locked][0])))
             denominator = np.where(is_locked, np.nan, denominator)
-        return self.guide_sense / denominator
+        return self.guide_sign / denominator
 
     M_knuckle = value(
         "M_An",
@@ -565,7 +612,7 @@ class State(Chambers):
         radial = None if self.P is None else self.mechanism.radial(self.posed)
         if radial is None:
             return None
-        push = self.along_rod * radial + self._rod_side * self.angle.sin
+        push = self.along_stroke * radial + self._rod_side * self.angle.sin
         if self.drive.cylinder.link_rod is not None:
             push = push - self._knuckle_inertia_on_pin.real
         if rod is None:
@@ -577,14 +624,16 @@ class State(Chambers):
     M_out = value(
         "M_2",
         "torque",
-        "Resisting moment on the rocker, or on the second crank",
-        lambda state: None if state.mechanism.slides else state.resistance,
+        "Moment of the load on the rocker, or on the second crank",
+        lambda state: None if state.mechanism.slides else state.output_load,
     )
 
     @property
     def _output(self) -> Any:
         """Force in N (moment in N m) at the output, less friction, from which virtual work gives T and M."""
-        return self.along_rod if self.mechanism.slides else self.M_out
+        if self.mechanism.slides:
+            return self.along_stroke
+        return self.M_out
 
     @cached_property
     def _rod_tangential(self) -> Number:
@@ -624,7 +673,9 @@ class State(Chambers):
 
         It lacks the moments of friction in pin and journals, which T includes.
         """
-        return self.tangential_at_pin if self.drive.pin_friction else None
+        if not self.drive.pin_friction:
+            return None
+        return self.tangential_at_pin
 
     @cached_property
     def tangential_at_pin(self) -> Any:
@@ -660,7 +711,7 @@ class State(Chambers):
         return self.filled(sliding + rubbing)
 
     @cached_property
-    def along_rod(self) -> Number:
+    def along_stroke(self) -> Number:
         """Component S cos ψ of the rod force along the stroke line in N: the piston force less all friction."""
         if self.P is None or self.drive.cylinder.friction is None:
             return self.P
@@ -691,12 +742,12 @@ class State(Chambers):
         return push - sum(self.losses.values(), start=0.0)
 
 
-def on_pin(state: State) -> Vector:
+def crank_pin_force(state: State) -> Vector:
     """Return the force of the rod on the crank pin in N, in the frame of the throw."""
     return Vector(state.D - state.drive.rod_centrifugal_force, state.tangential_at_pin)
 
 
-def on_crosshead_pin(state: State) -> Vector:
+def crosshead_pin_force(state: State) -> Vector:
     """Return the force of the crosshead on its pin in N: components along P and along N, with their signs.
 
     Inertia and weight of the rod are excluded: along the stroke line it is the rod load less friction.
@@ -704,7 +755,7 @@ def on_crosshead_pin(state: State) -> Vector:
     drive, masses = state.drive, state.drive.cylinder.masses
     of_rod = drive.mass - masses.parts if masses else 0.0
     along, across = drive.weight_of(of_rod)
-    push = state.along_rod + state.b * of_rod if drive.has_inertia else state.along_rod
+    push = state.along_stroke + state.b * of_rod if drive.has_inertia else state.along_stroke
     return Vector(push - along, state.N - drive.guide_weight + across)
 
 
@@ -727,4 +778,6 @@ def _sum(first: Any, second: Any) -> Any:
     """Return the sum of two forces, of which each may be None."""
     if first is None:
         return second
-    return first if second is None else first + second
+    if second is None:
+        return first
+    return first + second

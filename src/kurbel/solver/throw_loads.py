@@ -8,7 +8,7 @@ from kurbel.arrays import Array, ComplexArray
 from kurbel.numerics.pieces import Pieces
 from kurbel.solver.effort import position
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.state import State, on_pin
+from kurbel.solver.state import State, crank_pin_force
 from kurbel.solver.vector import Force
 
 
@@ -20,13 +20,15 @@ def state_at(forces: CylinderForces, degrees: Array, within: Array) -> State:
 
 def pin_load(state: State) -> Force:
     """Return the force of a rod on the crank pin in N, D + iT; 0 where no force acts in the cylinder."""
-    return on_pin(state).complex if state.drive.has_force else 0j
+    if not state.drive.has_force:
+        return 0j
+    return crank_pin_force(state).complex
 
 
 def resampled(pieces: Pieces, forces: CylinderForces, *values: Force) -> ComplexArray:
     """Return quantities of a cylinder, sampled on its own pieces, at the nodes of common pieces, (q, nodes, pieces)."""
     source = forces.pieces
-    parts = pieces.carried(real_parts(values, source.degrees.shape), source, position(forces))
+    parts = pieces.resampled(real_parts(values, source.degrees.shape), source, position(forces))
     return parts[::2] + 1j * parts[1::2]
 
 

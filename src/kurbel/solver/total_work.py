@@ -18,11 +18,11 @@ _PRINTED = ("flywheel", "forces")
 
 
 class PistonWorks(NamedTuple):
-    """Indicated work of driving and of driven pistons, negative, and work of what rams drive, negative, in J."""
+    """Indicated work of driving and of driven pistons, negative, and work of the loads on rams, negative if moved, in J."""
 
     driving: Any
     driven: Any
-    resisted: Any
+    loads: Any
 
 
 class TotalWork(Results):
@@ -102,12 +102,11 @@ class TotalWork(Results):
             if cylinder.work is None:
                 continue
             cycles = self.machine.revolutions / cylinder.drive.revolutions
-            resistance = cylinder.resistance_work
             works.append(
                 PistonWorks(
                     cylinder.work_driving * cycles,
                     cylinder.work_driven * cycles,
-                    0.0 if resistance is None else resistance * cycles,
+                    cylinder.drive.output_work * cycles,
                 )
             )
         if not works:
@@ -128,7 +127,9 @@ class TotalWork(Results):
             lost = cylinder.friction_work
             if lost is not None:
                 works.append(lost * (self.machine.revolutions / cylinder.drive.revolutions))
-        return total(*works) if works else None
+        if not works:
+            return None
+        return total(*works)
 
     def per_second(self, work: Any) -> Any:
         """Return the power in W of a work in J per cycle of the machine; None without a speed, and at rest."""
@@ -142,8 +143,12 @@ class TotalWork(Results):
             return None
         # the work at the shaft, with the losses of the machine
         work = self._mean_torque() * (2 * math.pi * self.machine.revolutions)
-        put_in = works.driving + where(work < 0, -work, 0.0)
-        given_off = where(work > 0, work, 0.0) - works.driven - works.resisted
+        put_in = (
+            works.driving + where(work < 0, -work, 0.0) + where(works.loads > 0, works.loads, 0.0)
+        )
+        given_off = (
+            where(work > 0, work, 0.0) - works.driven - where(works.loads < 0, works.loads, 0.0)
+        )
         if every(put_in == 0):
             return None
         return given_off / where(put_in == 0, math.nan, put_in)

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Any
 
 from kurbel.arrays import Number
-from kurbel.declared.unit_systems import show
+from kurbel.declared.unit_systems import show, show_range
 from kurbel.machine import Cylinder
 from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.valve import Valve, ValveEnd
@@ -24,6 +24,7 @@ _ENDS = {"head": ("H", "head end"), "crank": ("C", "crank end")}
 """End of the cylinder -> index of its symbols, and its name."""
 _EVENTS = ("admission", "cut_off", "release", "compression")
 _MOTION = ("motion",)
+_THROTTLING = 50.0
 _FAST = 60.0  # m/s at any moment, from which on inlets throttle: Die Kolbendampfmaschinen, p. 141
 
 
@@ -143,8 +144,8 @@ class ValveGear(Results):
         if fastest > _FAST:
             speed = show(round(fastest, 1), "velocity")
             yield (
-                f"the steam rushes through the port at up to {speed}: throttling is to be expected above 50 to 60 m/s, "
-                "and the ideal card is too full there"
+                f"the steam rushes through the port at up to {speed}: throttling is to be expected "
+                f"above {show_range(_THROTTLING, _FAST, 'velocity')}, and the ideal card is too full there"
             )
 
     def _times_faster(self, end: ValveEnd) -> Number | None:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -80,7 +81,9 @@ class Subject(NamedTuple):
         if self.results:
             return self.results.lists
         # columns alone are those of a shaft segment
-        return every_quantity() if self.at else Lists((), ())
+        if self.at:
+            return every_quantity()
+        return Lists((), ())
 
     def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""
@@ -201,20 +204,21 @@ def report_on(
         return _report_on_names(frame, machine, title, subjects)
 
     with_rows = _with_rows(frame, subjects)
-    ids = {column.id for rows in with_rows for column in rows.columns}
+    columns = chain.from_iterable(rows.columns for rows in with_rows)
+    ids = {column.id for column in columns}
     _check_columns(frame, with_rows, ids)
 
     # a CSV table has key values only where it has nothing else
     has_tables = bool(ids) or any(rows.tables for rows in with_rows)
     with_values = frame.prose or not has_tables
     parts = [_part(rows, frame, with_values) for rows in with_rows]
-    whole = parts.pop() if with_rows and with_rows[-1].subject.whole else None
+    of_machine = parts.pop() if with_rows and with_rows[-1].subject.whole else None
     return Report(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
         _PARTS.get(frame.command, "cylinders"),
-        whole=whole,
+        whole=of_machine,
         parts=tuple(parts),
         notes=(*notes, *_added_notes(frame, with_rows, ids)) if frame.prose else (),
         provenance=partial(provenance, machine) if frame.prose else None,
@@ -284,12 +288,12 @@ def _report_on_names(
     have.
     """
     # pistons of a rod are meant by their names alone
-    pistons = [piston for subject in subjects for piston in subject.pistons]
+    pistons = list(chain.from_iterable(subject.pistons for subject in subjects))
     choices = choices_in(frame.names, frame.command, [*subjects, *pistons])
     scopes = {choice.scope for choice in choices}
     named_pistons = [piston for piston in pistons if piston.name in scopes]
 
-    parts, whole = list[Part](), None
+    parts, of_machine = list[Part](), None
     printed = set[ChosenValue]()
     for subject in (*subjects, *named_pistons):
         chosen = list(subject.named(choices))
@@ -300,7 +304,7 @@ def _report_on_names(
         key_values = tuple(_with_sides(subject, shown_key_values(chosen, frame.system), chosen))
         part = Part(subject.name, (), key_values, (), tuple(subject.warnings), of=subject.of)
         if subject.whole:
-            whole = part
+            of_machine = part
         else:
             parts.append(part)
 
@@ -313,7 +317,7 @@ def _report_on_names(
         machine.name,
         "bearings" if frame.command == "bearings" else "cylinders",
         tuple(parts),
-        whole,
+        of_machine,
         provenance=partial(provenance, machine),
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )
@@ -440,7 +444,9 @@ def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
 
 def _is_added(quantity: Quantity, frame: Frame) -> bool:
     """Return whether a column is shown in any case: that of the even steps, and approximations to compare with."""
-    return quantity.id == frame.over or (frame.compare and quantity.id.endswith("_book"))
+    return quantity.id == frame.over or (
+        frame.compare and quantity.id.endswith(("_book", "_error"))
+    )
 
 
 def _usual_columns(frame: Frame, subject: Subject, added: Sequence[Quantity]) -> list[Quantity]:
@@ -507,9 +513,9 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     key_values = called(name, every_quantity().key_values(command).values())
     if key_values:
         return f"'{name}' is a key value and no column; --key-values {key_values[0]} prints it"
-    words = [
-        word for column in (*present, *declared.values()) for word in (column.id, column.symbol)
-    ]
+    words = list[str]()
+    for column in (*present, *declared.values()):
+        words += (column.id, column.symbol)
     near = in_sentences(name, present) or did_you_mean(name, tuple(words))
     return (
         f"'{text_in_one_line(name)}' is no column of kurbel {command}{near} "

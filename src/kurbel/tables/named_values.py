@@ -140,6 +140,8 @@ def _unknown(name: str, id: str, command: str, declared: Mapping[str, Quantity])
     columns = called(id, quantities.columns(command).values())
     if columns:
         return f"'{shown_name}' is a column and no key value; --columns {columns[0]} prints it"
-    names = [name for quantity in declared.values() for name in (quantity.id, quantity.symbol)]
+    names = list[str]()
+    for quantity in declared.values():
+        names += (quantity.id, quantity.symbol)
     near = in_sentences(id, declared.values()) or did_you_mean(id, tuple(names))
     return f"'{shown_name}' is no key value of kurbel {command}{near}"

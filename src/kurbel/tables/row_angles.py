@@ -9,10 +9,16 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from kurbel.arrays import Number
-from kurbel.declared.numerals import NUMBER, RATIO, keyboard_text, parse_ratio
+from kurbel.declared.numerals import NUMBER, keyboard_text, parse_ratio
 from kurbel.declared.reading import LONGEST_VALUE, text_in_one_line
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import kind_example, unit_factor
+from kurbel.declared.units import (
+    kind_example,
+    other_zero,
+    split_quantity,
+    unit_factor,
+    zero_of,
+)
 from kurbel.errors import Nowhere, UnitError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import number_of
@@ -123,18 +129,28 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
 def _condition(text: str) -> Condition:
     """Return the condition that a text is; raises UsageError where it is none."""
     name, equals, value = (part.strip() for part in keyboard_text(text).partition("="))
-    number = re.match(RATIO, value) or NUMBER.match(value)
-    of = value[number.end() if number else 0 :].strip()
-    is_complete = name and equals and (number or of)
+    try:
+        factor, of = _factor_and_rest(value)
+    except UnitError as error:
+        raise UsageError(f"--where: {error}") from None
+    is_complete = name and equals and (factor is not None or of)
     if len(text) > LONGEST_VALUE or not text.isprintable() or not is_complete:
         raise UsageError(
             f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{text_in_one_line(text)}'"
         )
-    try:
-        factor = parse_ratio(number.group()) if number else None
-    except UnitError as error:
-        raise UsageError(f"--where: {error}") from None
     return Condition(text, name, factor, of)
+
+
+def _factor_and_rest(value: str) -> tuple[float | None, str]:
+    """Return the number of a condition, None for none, and what follows it: a unit or a key value.
+
+    >>> _factor_and_rest("1/4 c_max"), _factor_and_rest("50 % c_max"), _factor_and_rest("1 ft 6 in")
+    ((0.25, 'c_max'), (0.5, 'c_max'), (18.0, 'in'))
+    """
+    percent = re.match(rf"{NUMBER.pattern}\s*%", value)
+    if percent:
+        return parse_ratio(percent.group()), value[percent.end() :].strip()
+    return split_quantity(value) or (None, value)
 
 
 def _searched_column(condition: Condition, subject: Subject, command: str) -> Quantity | None:
@@ -210,7 +226,10 @@ def _value(subject: Subject, command: str, column: Quantity, condition: Conditio
                 f"--where: {text_in_one_line(of)} has no number before the unit; "
                 f"write {kind_example(column.kind)}"
             )
-        return factor * up / down
+        wrong_zero = column.kind == "pressure" and other_zero(of, column.zero, column.id)
+        if wrong_zero:
+            raise UsageError(f"--where: {wrong_zero}")
+        return (factor + zero_of(of)) * up / down
 
     # no unit, so it must be a key value of the column's kind
     declared = subject.lists.key_values(command).items()

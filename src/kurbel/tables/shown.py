@@ -3,6 +3,7 @@
 import re
 from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import UsageError
 from kurbel.numerics.extreme import Extreme, number_of, size_of
-from kurbel.quantity import Quantity
+from kurbel.quantity import ENTRY_DECIMALS, Quantity
 from kurbel.solver.figures import AtAngles
 from kurbel.tables.tables import CellValue, Column, KeyValue, PlaceTable
 
@@ -138,13 +139,14 @@ class Places(NamedTuple):
                 column._replace(
                     decimals=_decimals(quantity, values),
                     alone=0 if quantity.kind == "angle" else self.alone,
+                    for_entry=quantity.for_entry,
                 )
             )
 
         names = [row_names for row_names, _ in self.rows]
         words: dict[str, str] = {}
         if not self.headed:
-            words = {_as_id(name): name for row_names in names for name in row_names}
+            words = {_as_id(name): name for name in chain.from_iterable(names)}
             names = [tuple(map(_as_id, row_names)) for row_names in names]
         return PlaceTable(
             self.id,
@@ -179,12 +181,26 @@ def _decimals(quantity: Quantity, values: Iterable[float | None]) -> int | None:
     """Return the decimals of a column of places, None for those of its digits."""
     if quantity.id == "distance":
         return 3
+    if quantity.kind == "angle" and quantity.for_entry:
+        return _entry_decimals(values)
     if quantity.id not in ("order", "mode"):
         return None
     numbers = [value for value in values if value]
     if all(number % 1 == 0 for number in numbers):
         return 0
     return 1 if all(number % 0.5 == 0 for number in numbers) else 3
+
+
+def _entry_decimals(degrees: Iterable[float | None]) -> int:
+    """Return the decimals of angles that are written into a machine file again, fewer where none has so many.
+
+    >>> _entry_decimals([150.0, None, 26.565051177]), _entry_decimals([150.0])
+    (4, 0)
+    """
+    for decimals in range(ENTRY_DECIMALS):
+        if all(abs(angle - round(angle, decimals)) < 1e-9 for angle in degrees if angle):
+            return decimals
+    return ENTRY_DECIMALS
 
 
 _BETWEEN = re.compile(r"[\s,:;=–]+")
@@ -236,4 +252,5 @@ def _shown(quantity: Quantity, value: object, unit: str) -> KeyValue:
         value.degrees if isinstance(value, Extreme) else None,
         any(map(quantity.is_noise, numbers)),
         quantity.heading,
+        for_entry=quantity.for_entry,
     )

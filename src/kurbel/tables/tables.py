@@ -4,7 +4,7 @@ import math
 import re
 from array import array
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from itertools import groupby
+from itertools import chain, groupby
 from typing import NamedTuple, TypeVar, Union
 
 from kurbel.declared.reading import text_in_one_line
@@ -22,6 +22,7 @@ class Column(NamedTuple):
     alone: significant digits if each value has its own scale, as errors over many powers of ten; 0 for a common scale.
     size: the largest value of the whole curve, if the values here are only rounding errors relative to it; else 0.
     minor: for programs, and for people who name it: 0 at every angle, or the same as another row.
+    for_entry: see `Quantity`.
     """
 
     id: str
@@ -35,6 +36,7 @@ class Column(NamedTuple):
     alone: int = 0
     size: float = 0.0
     minor: bool = False
+    for_entry: bool = False
 
 
 class KeyValue(NamedTuple):
@@ -42,7 +44,7 @@ class KeyValue(NamedTuple):
 
     noise: the value is only rounding error, printed with digits in JSON only; heading: see `Quantity`; minor: for
     programs, and for people who name it, as what other rows have, too; side: `before` where the extreme is the limit
-    before a jump, while tables show what is just after it.
+    before a jump, while tables show what is just after it; for_entry: see `Quantity`.
     """
 
     id: str
@@ -56,6 +58,7 @@ class KeyValue(NamedTuple):
     heading: str = ""
     minor: bool = False
     side: str = ""
+    for_entry: bool = False
 
 
 class LeftOut(NamedTuple):
@@ -146,14 +149,17 @@ class Report(NamedTuple):
     @property
     def all_parts(self) -> tuple[Part, ...]:
         """The parts, and the whole machine after them."""
-        return self.parts if self.whole is None else (*self.parts, self.whole)
+        if self.whole is None:
+            return self.parts
+        return (*self.parts, self.whole)
 
     @property
     def printed_tables(self) -> Iterator[PlaceTable]:
         """The tables of places that are printed for people."""
-        return (
-            table for part in self.all_parts for table in part.place_tables if not table.in_note
-        )
+        for part in self.all_parts:
+            for table in part.place_tables:
+                if not table.in_note:
+                    yield table
 
     @property
     def is_of_one_cylinder(self) -> bool:
@@ -270,12 +276,12 @@ _NUMBERED = re.compile(r"(.*\D)(\d{1,9})$")
 Grouped = TypeVar("Grouped")
 
 
-def together(names: Sequence[str]) -> str:
+def joined_names(names: Sequence[str]) -> str:
     """Return several names as one text; names that differ only in a number are listed by their numbers.
 
-    >>> together(["cylinder 1", "cylinder 2", "cylinder 3", "cylinder 6"]), together(["HP", "LP"])
+    >>> joined_names(["cylinder 1", "cylinder 2", "cylinder 3", "cylinder 6"]), joined_names(["HP", "LP"])
     ('cylinders 1–3, 6', 'HP, LP')
-    >>> together(["pin of left 1", "pin of right 1", "pin of left 2", "pin of right 2"])
+    >>> joined_names(["pin of left 1", "pin of right 1", "pin of left 2", "pin of right 2"])
     'pin of left 1, 2, right 1, 2'
     """
     texts = []
@@ -350,8 +356,8 @@ def shown_once(report: Report) -> Report:
 
     parts = []
     for group in groups:
-        name = together([str(part.name) for part in group])
-        warnings = dict.fromkeys(warning for part in group for warning in part.warnings)
+        name = joined_names([str(part.name) for part in group])
+        warnings = dict.fromkeys(chain.from_iterable(part.warnings for part in group))
         parts.append(group[0]._replace(name=name, warnings=tuple(warnings)))
     is_alone = len(parts) == 1 and report.whole is None
     return report._replace(
@@ -379,10 +385,13 @@ def _content(part: Part) -> Hashable:
 def _left_out_in_short(parts: Iterable[Part]) -> tuple[str, ...]:
     """Return what parts leave out as one sentence, each reason once."""
     reasons = dict[str, list[str]]()
-    for left_out in dict.fromkeys(left_out for part in parts for left_out in part.left_out):
+    all_left_out = dict.fromkeys(chain.from_iterable(part.left_out for part in parts))
+    for left_out in all_left_out:
         reasons.setdefault(left_out.why, []).append(left_out.what)
     texts = [f"{', '.join(what)} ({why})" for why, what in reasons.items()]
-    return (f"Left out: {'; '.join(texts)}.",) if texts else ()
+    if not texts:
+        return ()
+    return (f"Left out: {'; '.join(texts)}.",)
 
 
 def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) -> Report:

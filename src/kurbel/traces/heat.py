@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Indices
 from kurbel.declared.record import Record, Rule, field
 
 
@@ -80,12 +80,32 @@ class Released(NamedTuple):
     total: float
 
     @property
+    def supplied(self) -> None:
+        """The heat of the fuel: a trace does not show it."""
+        return None
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The degrees from the firing dead centre between which heat is counted."""
+        return float(self.angles[0]), float(self.angles[-1])
+
+    @property
     def burnt(self) -> Array:
         """The burnt share x_b (n,) at its angles: 0 before combustion, 1 after it."""
         burnt = (self.heat - self.heat[self.first]) / self.total
         burnt[: self.first] = 0.0
         burnt[self.last :] = 1.0
         return burnt
+
+    def burnt_at(self, after: Array, machine: Indices | None = None) -> Array:
+        """Return the burnt share x_b at so many degrees after the firing dead centre; a trace is of one machine."""
+        return np.interp(after, self.angles, self.burnt)
+
+    def rate_at(self, after: Array, machine: Indices | None = None) -> Array:
+        """Return the heat in J released over the degree around these angles, after the firing dead centre."""
+        ahead = np.interp(after + CHORD / 2, self.angles, self.heat)
+        behind = np.interp(after - CHORD / 2, self.angles, self.heat)
+        return (ahead - behind) / CHORD
 
     def angle_at(self, share: float) -> float:
         """Return the first angle in degrees after which so much of the heat is released."""
@@ -103,8 +123,6 @@ class Released(NamedTuple):
     def fastest(self) -> tuple[float, float]:
         """The largest heat in J that is released over one degree, and the angle in the middle of that."""
         middles = self.angles[self.first : self.last + 1]
-        ahead = np.interp(middles + CHORD / 2, self.angles, self.heat)
-        behind = np.interp(middles - CHORD / 2, self.angles, self.heat)
-        rates = (ahead - behind) / CHORD
+        rates = self.rate_at(middles)
         top = int(np.argmax(rates))
         return float(rates[top]), float(middles[top])

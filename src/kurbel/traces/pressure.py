@@ -2,11 +2,11 @@
 
 import math
 from functools import cached_property
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import within_cycle
 from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.arithmetic import unless_cancelled
@@ -14,12 +14,16 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
 from kurbel.traces.correct import (
     Trace,
+    by_angle,
     by_straight_lines,
     by_trapezoid,
     corrected,
     noise_of,
     work_weights,
 )
+
+if TYPE_CHECKING:
+    from kurbel.traces.heat import Released
 
 _CHORD = 1.0
 """Degrees over which a rate of pressure rise is measured: between two samples noise would dominate."""
@@ -35,6 +39,7 @@ class TracePressure:
     """
 
     traced: ClassVar[Literal[True]] = True
+    by_stroke: ClassVar[Literal[False]] = False
 
     def __init__(self, trace: Trace, setting: Setting) -> None:
         self.trace, self.setting = trace.over(setting.cycle), setting
@@ -75,8 +80,11 @@ class TracePressure:
 
     # the rise of pressure
 
-    def rise(self, degrees: Array) -> Array:
-        """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each."""
+    def rise(self, degrees: Array, machine: Indices | None = None) -> Array:
+        """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each.
+
+        A trace is of one machine.
+        """
         ahead, behind = (self.at(at, at) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
         return (ahead - behind) / _CHORD
 
@@ -102,6 +110,32 @@ class TracePressure:
         (rises,), middles = self.rises(self.pressures[np.newaxis])
         top = int(np.argmax(rises))
         return Extreme(float(rises[top]), float(middles[top]))
+
+    # the heat
+
+    @property
+    def releases(self) -> bool:
+        """Whether its heat release is requested."""
+        return self.trace.heat is not None
+
+    def released(self, area: Number) -> "Released | None":
+        """Return the heat that the mean cycle releases over a piston of this area in m²; None where it has none."""
+        law = self.trace.heat
+        if law is None:
+            return None
+        setting = self.setting
+        stroke_volume = area * setting.mechanism.stroke
+
+        # the closing sample is the first one again
+        after = self.trace.from_dead_centre(setting)[:-1]
+        order = np.argsort(after, kind="stable")
+        after = after[order]
+        absolute = self.pressures[:-1][order] + setting.lift
+        clearance = self.trace.clearance or 0.0
+        volumes = (setting.stroke_fraction(after) + clearance) * stroke_volume
+        degrees = after + setting.own_dead_centre
+        per_radian = by_angle(setting, setting.mechanism.slope, degrees) * stroke_volume
+        return law.released(after, absolute, volumes, np.radians(per_radian))
 
     # the work
 

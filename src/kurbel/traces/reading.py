@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.declared.unit_systems import requested_system, show
 from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.traces.correct import (
@@ -76,8 +77,10 @@ _THIN = 2000
 
 
 def in_bar(pressure: float) -> str:
-    """Write a pressure in Pa for a note."""
-    return f"{pressure / 1e5 + 0.0:.4g} bar"
+    """Write a pressure in Pa for a note, in bar unless another system of units is requested."""
+    if requested_system() in ("", "metric"):
+        return f"{pressure / 1e5 + 0.0:.4g} bar"
+    return show(pressure, "pressure", figures=4)
 
 
 class TraceReading:

@@ -79,7 +79,9 @@ class Figures(Form):
     def figure_of(self, quantity: Quantity) -> Form:
         """Return the form of a figure for a quantity."""
         number = NumberForm(quantity.kind)
-        return FigureForm(number) if self.tolerated else number
+        if not self.tolerated:
+            return number
+        return FigureForm(number)
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read every figure by the form of its quantity."""
@@ -110,7 +112,9 @@ class Figures(Form):
             elif isinstance(figure, float):
                 figure = Bound(figure, written_unit(str(text)), name)
             figures[id] = figure
-        return REFUSED if has_refused(figures.values()) else tuple(figures.items())
+        if has_refused(figures.values()):
+            return REFUSED
+        return tuple(figures.items())
 
     def _unknown(self, name: str, quantities: Mapping[str, Quantity]) -> str:
         """Return the message on a name that no key value has, with a likely one or the first few."""
@@ -139,7 +143,9 @@ def _meant_ids(name: str, quantities: Mapping[str, Quantity]) -> tuple[str, str,
 
 def _node_or_nothing(value: Node) -> str:
     """Return the description of a value that is no mapping, for messages."""
-    return "nothing" if is_nothing(value) else node_kind(value)
+    if is_nothing(value):
+        return "nothing"
+    return node_kind(value)
 
 
 LIMITS = Figures(
@@ -161,6 +167,7 @@ class FigureForm(Form):
 
     def __init__(self, size: NumberForm) -> None:
         self.size = size
+        self.tolerance = NumberForm(size.kind, is_difference=True)
         self.absolute = f"{size.example} ± 0.1 {written_unit(size.example)}".rstrip()
         sample = f"{size.example} ± 0.5 %"
         tolerated = f"a figure and its tolerance, such as '{sample}' or '{self.absolute}'"
@@ -185,7 +192,7 @@ class FigureForm(Form):
         if percent:
             tolerance = float(percent[1]) / 100 * abs(figure)
         else:
-            tolerance = self.size.read(reading, Plain(tolerance_text), path)
+            tolerance = self.tolerance.read(reading, Plain(tolerance_text), path)
         if tolerance is REFUSED:
             return REFUSED
         if not tolerance > 0:
@@ -237,7 +244,9 @@ class ByKey(Form):
                 continue
             expected = f"expected a standard uncertainty above 0, such as {_SPREADS}"
             spreads[name] = reading.fault((*path, name), f"{expected}, got {node_kind(node)}")
-        return REFUSED if has_refused(spreads.values()) else tuple(spreads.items())
+        if has_refused(spreads.values()):
+            return REFUSED
+        return tuple(spreads.items())
 
 
 UNCERTAINTIES = ByKey(

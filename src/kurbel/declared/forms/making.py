@@ -46,7 +46,9 @@ class Maker:
         """Return the record, tuple or value that was read; REFUSED after reporting what is wrong with it."""
         if isinstance(value, tuple):
             has_mapping = any(isinstance(item, ReadMapping) for item in value)
-            return tuple(map(self.made, value)) if has_mapping else value
+            if not has_mapping:
+                return value
+            return tuple(map(self.made, value))
         if not isinstance(value, ReadMapping):
             return value
         values = {name: self.made(node) for name, node in value.values.items()}

@@ -575,4 +575,6 @@ def form_of(form: Likeness, bounds: Mapping[str, Any] = {}) -> Form:
         return Choice(("true", "false"), means={"true": True, "false": False})
     if form is str:
         return TEXT
-    return form if isinstance(form, Form) else RecordForm(form)
+    if isinstance(form, Form):
+        return form
+    return RecordForm(form)

@@ -113,7 +113,9 @@ def one_line(value: Node, expected: str) -> str:
         refused(f"expected {expected}, got {len(value)} characters; {LONGEST_VALUE} are the most")
     if not isinstance(value, str) or not value.isprintable():
         refused(f"expected {expected}, got {node_kind(value)}")
-    return value if value.strip() else refused(f"expected {expected}, got an empty text")
+    if value.strip():
+        return value
+    return refused(f"expected {expected}, got an empty text")
 
 
 def _beyond(value: Number, kind: str) -> tuple[tuple[Truth, str], ...]:
@@ -186,8 +188,8 @@ class NumberForm(Form):
     above, below: the value must be larger or smaller; least, most: it must not be smaller or larger; zero: 0 is allowed
     in addition to the bounds. words: texts allowed instead, such as `infinite`, with their values; or_else: what else
     is allowed, for messages. share_of: the quantity of which the value is a share, for the message on a value with a
-    unit. whole: it becomes an int. becomes: a function of the value and the text as written; apart: of one value at a
-    time, not of an array.
+    unit. is_difference: of two values, see `parse_quantity`. whole: it becomes an int. becomes: a function of the value
+    and the text as written; apart: of one value at a time, not of an array.
     """
 
     kind: str = "ratio"
@@ -199,6 +201,7 @@ class NumberForm(Form):
     words: Mapping[str, float] = field(default_factory=dict)
     zero: bool = False
     whole: bool = False
+    is_difference: bool = False
     share_of: str = ""
     or_else: str = ""
     becomes: Callable[[Any, str], object] | None = None
@@ -243,12 +246,14 @@ class NumberForm(Form):
         broken_bound = self.out_of_bounds(number) or out_of_size(number, self.kind)
         if broken_bound:
             refused(f"{text} {broken_bound}")
-        return self.becomes(number, text) if self.becomes else number
+        if not self.becomes:
+            return number
+        return self.becomes(number, text)
 
     def _number(self, text: str) -> float:
         """Return the number in the base of its kind; raises RuleError."""
         if self.kind != "ratio":
-            return parse_quantity(text, self.kind)
+            return parse_quantity(text, self.kind, self.is_difference)
         has_unit = written_unit(text)[:1].isalpha()
         if self.share_of and has_unit:
             refused(
@@ -473,7 +478,9 @@ class Points(Form):
         length = len(names)
         self._called, self._count = {2: ("pair", "two"), 3: ("triple", "three")}[length]
         self._pattern = f"[{', '.join(names)}]"
-        sample = "[[0, 1], [1, 2]]" if length == 2 else "[[1, 20, -5]]"
+        sample = "[[0, 1], [1, 2]]"
+        if length == 3:
+            sample = "[[1, 20, -5]]" if least == 1 else "[[0, 5, 0], [1, 8, 0]]"
         # the schema
         number: Schema = {"type": "number"}
         if ratio:
@@ -554,7 +561,9 @@ class Points(Form):
                 f'expected a number, got the text "{text_in_one_line(text)}"; '
                 "leave out the quotation marks"
             )
-        return parse_ratio(text) if self.ratio and index == 0 else parse_number(text)
+        if self.ratio and index == 0:
+            return parse_ratio(text)
+        return parse_number(text)
 
     def _miscounted(self, texts: list[str]) -> NoReturn:
         """Raise RuleError for a point of too many or too few numbers."""

@@ -21,23 +21,27 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
-from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, sqrt, unless_cancelled, where
 from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.quantity import Computed, Heading, value
+from kurbel.solver.chapters.unbalanced import (
+    Unbalanced,
+    book_curvature,
+    contributions_of,
+    vector_at,
+)
 from kurbel.solver.effort import Term, TurningEffort
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import (
-    CylinderThrow,
     Weight,
     counterweights_of,
     middle_of,
@@ -47,174 +51,8 @@ from kurbel.solver.shaft import (
 )
 from kurbel.solver.state import State
 
-if TYPE_CHECKING:
-    from kurbel.mechanisms.link_rod import LinkedPiston
-
-_SAMPLES = 256
-"""Samples of a revolution for the Fourier analysis of a mechanism; repeatedly four times as many for a short rod, …"""
-_MOST_SAMPLES = 1 << 20
-"""… up to this many for a batch together: a batch of more raises an error, and its machines are computed singly."""
-_SHOWN = 1e-9
-"""Relative to the largest order: smaller ones are not listed."""
-_FEWEST = 8
-"""Smallest number of orders, so that those of balance shafts are included."""
-_MOST = 24
-"""Largest number of orders listed; a rod hardly longer than the crank has thousands, which decrease slowly."""
-_AT_ONCE = 64
-"""Orders that are computed at all angles together."""
-_EPS = float(np.finfo(float).eps)
 _REAL = 1e-12
 """Rounding of a direction (relative), or of a lever in m."""
-
-# forces and moments, order by order
-
-
-def orders_of(throw: CylinderThrow, book: bool, count: int) -> ComplexArray:
-    """Return the Fourier coefficients c_n in m, n = 1 … k, (k, count): x″ = 2 Re Σ c_n e^{inφ}; rounding is set to 0.
-
-    Samples are added until all orders in the upper half of those resolved vanish; a short rod needs more. book: of the
-    acceleration of first order. Raises UsageError for a rod with more orders than can be computed, L/R < 1.00000001.
-    """
-    mechanism = throw.cylinder.mechanism
-    samples = _SAMPLES
-    while samples * count <= _MOST_SAMPLES:
-        # d²x/dφ² at equal steps of a revolution
-        degrees: Array = np.arange(samples, dtype=float)[:, None] * (360.0 / samples)
-        angle = CrankAngle.of(degrees)
-        curvature = book_curvature(mechanism, angle) if book else mechanism.curvature(angle)
-        values = np.broadcast_to(curvature, (samples, count))
-        waves = np.fft.rfft(values, axis=0)[1:] / samples
-        rounding = _EPS * np.abs(values).max(axis=0)
-        # cosines and sines each: an even function is without sines
-        waves = unless_cancelled(waves, rounding, 1.0)
-        last = int(np.flatnonzero(waves.any(axis=1)).max(initial=0)) + 1
-        if last <= samples // 4:
-            return waves[:last]
-        samples *= 4
-    raise UsageError(
-        f"{throw.name}: the rod is so little longer than the crank that the orders of its forces do not converge"
-    )
-
-
-def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
-    """Return d²x/dφ² in m of first order, R 291; the true one where there is no rod, None where the book has none."""
-    offer = next((offer for offer in mechanism.OFFERS if offer.quantity.id == "b_book"), None)
-    return offer.factor(mechanism, angle) if offer else mechanism.curvature(angle)
-
-
-class Contribution(NamedTuple):
-    """What a throw or weight adds to the unbalanced force over ω²; place: along the shaft in m, None if not known.
-
-    waves: its Fourier coefficients in kg m from −k to k, (2k + 1, count).
-    """
-
-    waves: ComplexArray
-    place: Number | None
-
-
-def contributions_of(
-    throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: bool, count: int
-) -> list[Contribution]:
-    """Return (m x″(φ − δ) + m_rot R e^{i(φ − δ)}) e^{iγ} of each throw, and u n² e^{inφ} of each weight.
-
-    book: with the acceleration of first order. Cylinders with the same mechanism share one analysis.
-    """
-    # one analysis for each mechanism
-    throws_by_mechanism = {id(throw.cylinder.mechanism): throw for throw in throws}
-    orders = {key: orders_of(throw, book, count) for key, throw in throws_by_mechanism.items()}
-    k = max(_FEWEST, *map(len, orders.values()))
-    contributions = list[Contribution]()
-    # m x″(φ − δ) e^{iγ}: a real function has the conjugate waves backward
-    for throw in throws:
-        listed = orders[id(throw.cylinder.mechanism)]
-        forward = np.concatenate((listed, np.zeros((k - len(listed), count))))
-        waves = np.concatenate((forward[::-1].conj(), np.zeros((1, count)), forward))
-        lag = np.broadcast_to(throw.lag, count)
-        turned_back = np.multiply.outer(np.arange(-k, k + 1), lag)
-        turned = waves * throw.mass * unit_vector(throw.bank - turned_back)
-        contributions.append(Contribution(turned, throw.place))
-    contributions += _of_knuckles(throws, k, count)
-    # m_rot R of the throws, and the weights: u n² e^{inφ}
-    rotating = [throw.weight(throw.rotating) for throw in throws]
-    for weight in (*rotating, *weights):
-        if some(weight.product != 0):
-            waves = np.zeros((2 * k + 1, count), complex)
-            waves[k + weight.order] = weight.product * weight.order**2
-            contributions.append(Contribution(waves, weight.place))
-    return contributions
-
-
-def _of_knuckles(throws: Sequence[CylinderThrow], k: int, count: int) -> list[Contribution]:
-    """Return −m_k z″(φ − δ) e^{iγ} of the mass of each link rod at its knuckle pin, from order −k to k."""
-    contributions = list[Contribution]()
-    for throw in throws:
-        if not some(throw.knuckle_mass != 0):
-            continue
-        # z″ is complex: its waves forward and backward are not conjugate
-        samples = max(_SAMPLES, 4 * k)
-        degrees: Array = np.arange(samples, dtype=float)[:, None] * (360.0 / samples)
-        linked_piston = cast("LinkedPiston", throw.cylinder.mechanism)
-        _, acceleration = linked_piston.knuckle_motion(CrankAngle.of(degrees))
-        values = np.broadcast_to(acceleration, (samples, count))
-        transformed = np.fft.fft(values, axis=0) / samples
-        orders = np.arange(-k, k + 1)
-        waves = unless_cancelled(transformed[orders], _EPS * np.abs(values).max(axis=0), 1.0)
-        lag = np.broadcast_to(throw.lag, count)
-        turned_back = np.multiply.outer(orders, lag)
-        turned = waves * -throw.knuckle_mass * unit_vector(throw.bank - turned_back)
-        contributions.append(Contribution(turned, throw.place))
-    return contributions
-
-
-class Unbalanced:
-    """The unbalanced force over ω² in kg m, and the moment over ω² in kg m², of the sum of all parts.
-
-    z_0: reference plane of the moments in m; the moment is None where it, or a place, is not known. Orders that cancel
-    are exactly 0. orders: of one machine, the lowest orders that any part has, whether or not they cancel in the sum;
-    next_order: the first one that is not listed, None if all are.
-    """
-
-    def __init__(self, parts: Sequence[Contribution], z_0: Number | None) -> None:
-        waves = np.array([part.waves for part in parts])
-        self.force = _summed(waves, [1.0] * len(parts))
-        # a moment needs the levers of all parts
-        self.moment: ClosedCurve | None = None
-        places = [part.place for part in parts if part.place is not None]
-        if len(places) == len(parts) and (z_0 is not None or not places):
-            self.moment = _summed(waves, [place - z_0 for place in places if z_0 is not None])
-        # orders are those of the waves forward and backward together
-        sizes = np.abs(waves[:, :, 0]).max(axis=0)
-        sums = (sizes + sizes[::-1])[len(sizes) // 2 + 1 :]
-        orders = tuple((np.flatnonzero(sums > _SHOWN * sums.max()) + 1).tolist())
-        self.orders = orders[:_MOST]
-        self.next_order = orders[_MOST] if len(orders) > _MOST else None
-
-
-def _summed(waves: ComplexArray, levers: Sequence[Number]) -> ClosedCurve:
-    terms = waves * np.array([np.broadcast_to(lever, waves.shape[2]) for lever in levers])[:, None]
-    return ClosedCurve(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0)))
-
-
-def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
-    """Return the force or moment vectors (n,) of one machine at crank angles (n,) in degrees; rounding is set to 0."""
-    waves = curve.waves[:, 0]
-    present = np.flatnonzero(waves)
-    vectors = np.zeros(degrees.shape, complex)
-    offsets: Array = np.empty(0)
-    within_block = np.empty(0, complex)
-    for begin in range(0, len(present), _AT_ONCE):
-        block = present[begin : begin + _AT_ONCE]
-        # e^{inφ} = e^{iaφ} e^{i(n − a)φ}: the second factor is that of the block before; of few waves a = 0
-        first = curve.numbers[block[0]] if len(present) > _AT_ONCE else 0
-        apart = curve.numbers[block] - first
-        if not np.array_equal(apart, offsets):
-            offsets = apart
-            within_block = unit_vector(np.multiply.outer(offsets, degrees))
-        turned = waves[block, None] * (unit_vector(first * degrees) * within_block)
-        # one after another, so that the sum at an angle does not depend on the others
-        for wave in turned:
-            vectors += wave
-    return unless_cancelled(vectors, np.abs(waves).sum())
 
 
 # over the crank angle
@@ -232,7 +70,9 @@ def _vector(
 
     def part(columns: BalanceColumns) -> Array | None:
         vector = columns.vector(name)
-        return None if vector is None else of(vector)
+        if vector is None:
+            return None
+        return of(vector)
 
     return value(symbol, kind, text, part, on_request=("balance",) if asked else ())
 
@@ -377,6 +217,7 @@ class MachineBalance(Results):
         "unbalance",
         "Vector sum of the given counterweights, mass times radius",
         lambda balance: balance.sum_of_counterweights(),
+        for_entry=True,
     )
     # it cancels the forward rotating vector of order 1
     _direction = "Its direction from throw 1"
@@ -385,24 +226,35 @@ class MachineBalance(Results):
         "unbalance",
         "Counterweight balancing all rotating and half of the reciprocating mass",
         lambda balance: balance.shown(abs(balance.forward)),
+        for_entry=True,
     )
     counterweight_best_angle = value(
-        "α_1", "angle", _direction, lambda balance: balance.angle_of(-balance.forward)
+        "α_1",
+        "angle",
+        _direction,
+        lambda balance: balance.angle_of(-balance.forward),
+        for_entry=True,
     )
     counterweight_least = value(
         "u_min",
         "unbalance",
         "Counterweight that minimises the largest unbalanced force",
         lambda balance: balance.shown(abs(balance.least)),
+        for_entry=True,
     )
     counterweight_least_angle = value(
-        "α_min", "angle", _direction, lambda balance: balance.angle_of(balance.least)
+        "α_min",
+        "angle",
+        _direction,
+        lambda balance: balance.angle_of(balance.least),
+        for_entry=True,
     )
     share_best = value(
         "c_min",
         "ratio",
         "Share of the reciprocating mass that this counterweight balances",
         lambda balance: balance.share_of_least(),
+        for_entry=True,
     )
     F_free_best = value(
         "F_min",
@@ -413,7 +265,7 @@ class MachineBalance(Results):
 
     _locomotive = Heading("Locomotive")
     counterweight_wheel = value(
-        "u_R", "unbalance", "Largest counterweight of a wheel, mass times radius"
+        "u_R", "unbalance", "Largest counterweight of a wheel, mass times radius", for_entry=True
     )
     train_speed = value("v_z", "velocity", "Speed of the train")
     traction_variation = value("F_z", "force", "Largest variation of the tractive force")
@@ -499,7 +351,9 @@ class MachineBalance(Results):
     @cached_property
     def free(self) -> Unbalanced:
         """The unbalance with the counterweights and balance shafts of the machine file."""
-        return self._with(self._weights) if self._weights else self.bare
+        if self._weights:
+            return self._with(self._weights)
+        return self.bare
 
     @cached_property
     def book(self) -> Unbalanced | None:
@@ -514,7 +368,9 @@ class MachineBalance(Results):
         vectors = self.book if name.startswith("book") else self.free
         if vectors is None:
             return None
-        return vectors.force if name.endswith("force") else vectors.moment
+        if name.endswith("force"):
+            return vectors.force
+        return vectors.moment
 
     def times_omega_squared(self, lengths: Array, degrees: Array) -> Extreme | None:
         """Return the extreme of a vector from its largest magnitude over ω²; None without a speed."""
@@ -533,7 +389,9 @@ class MachineBalance(Results):
 
     def largest_of_book(self, name: str) -> Extreme | None:
         """Return the largest magnitude of a vector by the acceleration of first order, where these are compared."""
-        return self.largest(name) if self._compare else None
+        if not self._compare:
+            return None
+        return self.largest(name)
 
     # the rolling moment on the frame about the shaft: −(M + dH/dt), H the angular momentum about the shaft
 
@@ -557,7 +415,9 @@ class MachineBalance(Results):
             moment = state.b * (drive.mass * drive.mechanism.offset)
             if drive.cylinder.link_rod is not None:
                 moment = moment + state.knuckle_momentum_rate
-            return moment - state.rod_couple if drive.rod else moment
+            if not drive.rod:
+                return moment
+            return moment - state.rod_couple
 
         if self.effort is None:
             return None
@@ -579,7 +439,9 @@ class MachineBalance(Results):
     def cycle(self) -> float:
         """Period in degrees: one revolution, or the cycle of the machine where gas forces are in the rolling moment."""
         has_gas = any(cylinder.drive.has_gas for cylinder in self._cylinders)
-        return 360.0 * self.machine.revolutions if has_gas else 360.0
+        if not has_gas:
+            return 360.0
+        return 360.0 * self.machine.revolutions
 
     @property
     def breaks(self) -> Array:

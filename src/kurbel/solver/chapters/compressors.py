@@ -122,7 +122,10 @@ class CompressorStage(Results):
     )
     capacity = value("V_1", "flow", "Capacity: volume flow as it is drawn in", wanted_large=True)
     capacity_normal = value(
-        "V_N", "flow", "Volume flow at normal conditions, 0 °C and 1.01325 bar", wanted_large=True
+        "V_N",
+        "flow",
+        "Volume flow at normal conditions: the ice point and 1 atm",
+        wanted_large=True,
     )
     mass_flow = value("q_M", "mass_flow", "Mass flow", wanted_large=True)
     discharge_temperature = value("T_2", "temperature", "Temperature of what is delivered")

@@ -20,12 +20,13 @@ import numpy as np
 
 from kurbel.arrays import Array, Number
 from kurbel.errors import NoSolutionError
-from kurbel.machine.turning import Coupling
+from kurbel.machine.shaft_side import Coupling
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import value
-from kurbel.solver.chapters.chain import Chain, ChainEquation, row_of_joins
+from kurbel.solver.chapters.chain import Chain, row_of_joins
+from kurbel.solver.chapters.chain_equation import ChainEquation
 from kurbel.solver.chapters.harmonics import amplitudes
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import Results
@@ -109,7 +110,9 @@ class StiffCoupling(CouplingTorque):
         pieces, _ = self.torque
         highest, lowest = self.torque_extremes
         still = self._line.effort.count is None and highest.value == lowest.value
-        return None if still else self.result(np.ones(pieces.count))
+        if still:
+            return None
+        return self.result(np.ones(pieces.count))
 
 
 class ElasticCoupling(SpeedLine, CouplingTorque):

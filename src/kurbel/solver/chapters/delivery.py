@@ -2,19 +2,21 @@
 
     q(φ) = (1 − slip) Σ A |dx/dt|            over the chambers that shrink; where they grow it is drawn in
     ΔV = swing of ∫ (q − q_m) dt             the fluctuating volume, found as ΔE of the turning effort is
+    q = 0 before z_s, z_d                    until the valves open, where the liquid is compressible, see `pumped`
     q = … ± A dx/dt                          also of a chamber that is always open to the pipe: differential pumps
     V = ΔV (r + 1)/(2 (r − 1))               air vessel; r = V_max/V_min = ((2 + δ)/(2 − δ))^(1/n), V = ΔV/δ for n = 1
+    NPSH = (p_0 − p_v)/(ρ g) − h − h_a − h_f  p_0: pressure on the liquid, h: lift of the suction pipe
     h_a = l/(g a) dq/dt, h_f = f l u²/(2 g d)    heads in a pipe of the section a, u = q/a; behind a vessel q is q_m
     A_W = 1 − A_R,m/A_R,0                    share of the work against pipe friction that vessels save
 
-Pressures in the formulas are absolute. The flow is sampled on the pieces of the cycle, which are cut at dead centres,
-where the valves change.
+Pressures in the formulas are absolute. The flow is sampled on the pieces of the cycle, which are cut where the
+valves change: at dead centres, and at the corners of the card of a compressible liquid.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import cache, cached_property, partial, reduce
 from typing import Any
@@ -73,6 +75,11 @@ class DeliveryState(AtAngles):
         extremes=("delivery",),
     )
     friction_head = value("h_f", "length", "Head of friction in the suction pipe")
+    npsh = value(
+        "NPSH",
+        "length",
+        "Net positive suction head at the pump: pressure on the liquid over its vapour pressure, less lift and heads",
+    )
     delivery_acceleration_head = value(
         "h_a,d",
         "length",
@@ -113,13 +120,21 @@ class Delivery(Results):
     """What one pumping piston, or all of a machine, deliver; key values in SI, of many machines (machines,).
 
     pieces: of the cycle in degrees; rate: takes the words of `displaced` and returns dV/dφ in m³ per radian at their
-    nodes; is_double_acting: whether both ends of one piston deliver; pump: its pipes, None for one piston of several.
+    nodes; is_double_acting: whether both ends of one piston deliver; is_compressible: whether the liquid is, so that valves
+    open late; pump: its pipes, None for one piston of several.
     Raises UsageError for a vessel that would empty.
     """
 
     command, state = "delivery", DeliveryState
 
     stroke_volume = value("V_s", "volume", "Volume that the delivering chambers displace in a turn")
+    volumetric_efficiency = value(
+        "η_v",
+        "ratio",
+        "Volumetric efficiency of the ends that deliver",
+        wanted_large=True,
+        plain="eta_v",
+    )
     flow_mean = value("q_m", "flow", "Mean flow delivered", wanted_large=True)
     extremes = ExtremesOfColumns()
     volume_fluctuation = value(
@@ -138,7 +153,13 @@ class Delivery(Results):
     suction_lift_max = value(
         "h_s",
         "length",
-        "Largest suction lift: barometer less vapour pressure and heads",
+        "Largest suction lift: pressure on the liquid (barometer) less vapour pressure and heads",
+        wanted_large=True,
+    )
+    npsh_available = value(
+        "NPSH_A",
+        "length",
+        "Net positive suction head available, the least of the cycle: h_s less the lift of the pipe",
         wanted_large=True,
     )
     pipe_work = values_for(
@@ -156,6 +177,7 @@ class Delivery(Results):
         count: int | None,
         rate: Callable[..., Array],
         is_double_acting: bool,
+        is_compressible: bool,
         pump: Pump | None = None,
     ) -> None:
         self.name = name
@@ -164,6 +186,7 @@ class Delivery(Results):
         self.pump = pump
         self._rate = cache(rate)
         self._is_double_acting = is_double_acting
+        self.is_compressible = is_compressible
         # the pipes, and whether each is that of suction
         self._pipes = list[tuple[Pipe, bool]]()
         if pump and pump.suction_pipe:
@@ -193,19 +216,26 @@ class Delivery(Results):
         if self._is_double_acting:
             columns["flow_head"] = self._rate(crank_counts=False) * omega
             columns["flow_crank"] = self._rate(head_counts=False) * omega
+        # a flow cannot begin at once: heads are those of valves that open in the dead centres
+        at_dead_centres = {"is_rigid": True} if self.is_compressible else {}
         for pipe, is_suction in self._pipes:
             prefix = "" if is_suction else "delivery_"
             # h_a = l/(g a) dq/dt; behind a vessel the flow is steady
             if pipe.vessel is None:
                 inertia = self.pieces.of(pipe.length / (GRAVITY * _section(pipe)))
-                derivative = self._rate(is_suction=is_suction, is_derivative=True)
+                derivative = self._rate(
+                    is_suction=is_suction, is_derivative=True, **at_dead_centres
+                )
                 columns[f"{prefix}acceleration_head"] = derivative * omega**2 * inertia
             # h_f = f l u²/(2 g d), u = q/a
-            rate = self._rate(is_suction=is_suction)
+            rate = self._rate(is_suction=is_suction, **at_dead_centres)
             if pipe.vessel:
                 rate = self.pieces.of(self._mean(is_suction))
             heads = self.pieces.of(_friction(pipe) / GRAVITY) * rate * np.abs(rate) * omega**2
             columns[f"{prefix}friction_head"] = self.pieces.filled(heads)
+        if self.pump and self.pump.suction_pipe and self.pump.suction_pipe.lift is not None:
+            at_pump = self._head_of_suction(self.pump) - self.pump.suction_pipe.lift
+            columns["npsh"] = self.pieces.of(at_pump) - _heads_of_suction(columns)
         return columns
 
     def _mean(self, is_suction: bool = False) -> Number:
@@ -261,7 +291,12 @@ class Delivery(Results):
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         swing = self._swing(is_suction=False)
         answers = ValuesById()
-        answers["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
+        displacement = mean / (1 - slip)
+        if self.is_compressible:
+            rigid = self.pieces.mean(self._rate(is_rigid=True))
+            displacement = self._result(rigid) / (1 - slip)
+            answers["volumetric_efficiency"] = self._mean(is_suction=True) / displacement
+        answers["stroke_volume"] = 2 * math.pi * displacement
         answers["volume_fluctuation"] = swing
         answers["vessel_saving"] = self._saving(mean)
         # air vessels
@@ -284,18 +319,25 @@ class Delivery(Results):
             for id, work in zip(_PIPE_WORKS, self._works_of_pipes):
                 answers[id] = work * self.omega**2
         if self.pump and self.pump.suction_pipe:
-            answers["suction_lift_max"] = self._suction_lift(self.pump)
+            lift = self._suction_lift(self.pump)
+            answers["suction_lift_max"] = lift
+            if self.pump.suction_pipe.lift is not None:
+                answers["npsh_available"] = lift - self.pump.suction_pipe.lift
         return answers
 
     def _suction_lift(self, pump: Pump) -> Number:
         """Return the head in m that is left of the barometer for the lift, where the pipe takes most of it."""
-        heads = self.sampled["friction_head"]
-        if "acceleration_head" in self.sampled:
-            heads = heads + self.sampled["acceleration_head"]
+        heads = _heads_of_suction(self.sampled)
         largest = self._result(self.pieces.extremes(heads[None]).largest[0])
-        weight = pump.liquid.density * GRAVITY
-        barometric_head = (self.machine.ambient - pump.liquid.vapour_pressure) / weight
-        return barometric_head - largest
+        return self._head_of_suction(pump) - largest
+
+    def _head_of_suction(self, pump: Pump) -> Number:
+        """Return the head in m of the pressure on the liquid where the suction pipe begins, over its vapour pressure."""
+        assert pump.suction_pipe is not None
+        pressure: Number = self.machine.ambient
+        if pump.suction_pipe.pressure is not None:
+            pressure = pump.suction_pipe.pressure
+        return (pressure - pump.liquid.boiling_pressure) / (pump.liquid.density * GRAVITY)
 
     def _saving(self, mean: Number) -> Number:
         """Return the share of the work against friction that vessels at all pipes save: 1 − A_R,m/A_R,0.
@@ -326,6 +368,14 @@ class Delivery(Results):
         return as_it_is, bare, steady
 
 
+def _heads_of_suction(columns: Mapping[str, Array]) -> Array:
+    """Return the heads in m that the suction pipe takes, of friction and, without a vessel, of acceleration."""
+    heads = columns["friction_head"]
+    if "acceleration_head" in columns:
+        heads = heads + columns["acceleration_head"]
+    return heads
+
+
 def _section(pipe: Pipe) -> Number:
     return math.pi / 4 * pipe.diameter**2
 
@@ -340,7 +390,7 @@ def _vessel(vessel: Vessel, swing: Number, side: str) -> tuple[Number, Number]:
     # V = ΔV (r + 1)/(2 (r − 1)), r = ((2 + δ)/(2 − δ))^(1/n)
     if vessel.pressure_swing is not None:
         delta = vessel.pressure_swing
-        ratio = ((2 + delta) / (2 - delta)) ** (1 / vessel.exponent)
+        ratio = ((2 + delta) / (2 - delta)) ** (1 / vessel.air_exponent)
         return swing * (ratio + 1) / (2 * (ratio - 1)), delta
     # a vessel of a given volume must hold more than half of the fluctuating volume
     volume: Any = vessel.volume
@@ -356,7 +406,7 @@ def _vessel(vessel: Vessel, swing: Number, side: str) -> tuple[Number, Number]:
     # r = V_max/V_min of the volumes, to the power n of the pressures; of many machines NaN where it empties
     smallest = where(is_empty, 1.0, volume - half)
     volume_ratio = where(is_empty, math.nan, (volume + half) / smallest)
-    pressure_ratio = volume_ratio**vessel.exponent
+    pressure_ratio = volume_ratio**vessel.air_exponent
     delta = 2 * (pressure_ratio - 1) / (pressure_ratio + 1)
     return where(is_empty, math.nan, volume), delta
 
@@ -386,8 +436,7 @@ class MachineDelivery:
                 else:
                     ends += compressor_ends(forces.drive, piston)
         self.stages: tuple[CompressorStage, ...] = staged(ends)
-        pumping = [piston for _, piston in self._pumps]
-        pipes = _pressures_of_pipes(pumping, self.machine.ambient)
+        pipes = _pressures_of_pipes(self._pumps)
         if self._pumps:
             for forces in effort.cylinders:
                 self._open += [(forces, end) for end in open_ends(forces.drive, pipes)]
@@ -425,6 +474,7 @@ class MachineDelivery:
             self._count,
             rate,
             is_double_acting,
+            any(piston.opens_late for _, piston in self._pumps),
             self.machine.pump,
         )
 
@@ -434,7 +484,9 @@ class MachineDelivery:
         if len(self._pumps) < 2:
             return ()
         # cylinders of a group are alike but for their crank angles: the first is computed for all
-        representatives = {id(forces): group[0] for group in self.effort.groups for forces in group}
+        representatives = dict[int, CylinderForces]()
+        for group in self.effort.groups:
+            representatives |= {id(forces): group[0] for forces in group}
         computed: dict[tuple[int, int], Delivery] = {}
         deliveries = list[Delivery]()
         for forces, piston in self._pumps:
@@ -458,7 +510,15 @@ class MachineDelivery:
         ]
         rate = self._rate_of(forces.pieces, [(forces.samples, piston)], own_ends)
         is_double_acting = piston.head_delivers and piston.crank_delivers
-        delivery = Delivery("", self.machine, forces.pieces, self._count, rate, is_double_acting)
+        delivery = Delivery(
+            "",
+            self.machine,
+            forces.pieces,
+            self._count,
+            rate,
+            is_double_acting,
+            piston.opens_late,
+        )
         _ = delivery.answers, delivery.extremes_of("flow")
         return delivery
 
@@ -503,14 +563,14 @@ class MachineDelivery:
 
 
 def _pressures_of_pipes(
-    pistons: Sequence[DrivenPiston], ambient: Number
+    pumps: Sequence[tuple[CylinderForces, DrivenPiston]],
 ) -> dict[str, list[Number]]:
     """Return the absolute pressures in Pa of the delivery and of the suction pipes, those of the ends that deliver."""
     pipes: dict[str, list[Number]] = {"delivery": [], "suction": []}
-    for piston in pistons:
+    for forces, piston in pumps:
         delivering = {"head_end": piston.head_delivers, "crank_end": piston.crank_delivers}
         for end, delivers in delivering.items():
-            levels = absolute_levels(piston.gas, end, ambient) if delivers else []
+            levels = absolute_levels(forces.drive, piston.gas, end) if delivers else []
             if len(levels) > 1:
                 pipes["delivery"].append(reduce(np.maximum, levels))
                 pipes["suction"].append(reduce(np.minimum, levels))

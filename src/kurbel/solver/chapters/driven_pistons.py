@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Number, Truth
+from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine.ideal_cards import Compressor
-from kurbel.machine.indicator import Card, Chamber, Rectangle
-from kurbel.numerics.arithmetic import every, some
+from kurbel.machine.indicator import Chamber, levels_of_strokes
+from kurbel.numerics.arithmetic import every, some, spread
 from kurbel.solver.drive import Drive
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.state import State
@@ -22,14 +23,29 @@ _CANCELLED = 4e-14
 """Relative to its largest value: a smaller flow is rounding."""
 
 
+Openings = tuple[Number, Number]
+"""Fractions of the stroke from the smallest volume at which the suction and the delivery valve of a chamber open."""
+_AT_ONCE: Openings = (0.0, 1.0)
+
+
 class DrivenPiston(NamedTuple):
-    """A driven piston: its number in the cylinder, its pressures, which ends deliver, and whether it pumps."""
+    """A driven piston: its number in the cylinder, its pressures, which ends deliver, and whether it pumps.
+
+    head_opens, crank_opens: where valves open late, since the liquid is compressible.
+    """
 
     number: int
     gas: PistonGas
     head_delivers: bool
     crank_delivers: bool
     is_pump: bool
+    head_opens: Openings = _AT_ONCE
+    crank_opens: Openings = _AT_ONCE
+
+    @property
+    def opens_late(self) -> bool:
+        """Whether a valve opens after the dead centre."""
+        return self.head_opens is not _AT_ONCE or self.crank_opens is not _AT_ONCE
 
 
 def driven_pistons(drive: Drive) -> Iterator[DrivenPiston]:
@@ -39,7 +55,8 @@ def driven_pistons(drive: Drive) -> Iterator[DrivenPiston]:
     """
     for gas in drive.gas:
         # the gas takes work from a driven piston; a compressor without work is driven, too
-        chambers = list(gas.piston.chambers.values())
+        by_end = drive.cylinder.pistons[gas.number].chambers
+        chambers = list(by_end.values())
         is_compressor = any(isinstance(chamber, Compressor) for chamber in chambers)
         is_driven = _alike(gas.work < 0)
         if not is_driven and is_compressor:
@@ -54,8 +71,14 @@ def driven_pistons(drive: Drive) -> Iterator[DrivenPiston]:
         is_pump = False
         if not is_compressor:
             is_pump = drive.machine.pump is not None or all(map(_is_level, chambers))
-        number = drive.cylinder.pistons.index(gas.piston)
-        yield DrivenPiston(number, gas, head_delivers, crank_delivers, is_pump)
+        head_opens = crank_opens = _AT_ONCE
+        if drive.machine.pump is not None:
+            liquid = drive.machine.pump.liquid
+            head_opens = liquid.opening_fractions(by_end.get("head_end")) or _AT_ONCE
+            crank_opens = liquid.opening_fractions(by_end.get("crank_end")) or _AT_ONCE
+        yield DrivenPiston(
+            gas.number, gas, head_delivers, crank_delivers, is_pump, head_opens, crank_opens
+        )
 
 
 def _alike(condition: Truth) -> bool:
@@ -68,24 +91,7 @@ def _alike(condition: Truth) -> bool:
 
 def _is_level(chamber: Chamber | None) -> bool:
     """Return whether a chamber has one pressure on each stroke, as a pump's has."""
-    return _levels(chamber) is not None
-
-
-def _levels(chamber: Chamber | None) -> list[Number] | None:
-    """Return the pressures in Pa that a chamber has, each on a whole stroke; of the ambient none; else None."""
-    if isinstance(chamber, Rectangle):
-        if some(chamber.mean != 0):
-            return None
-        return [] if chamber.level is None else [chamber.level]
-    if not isinstance(chamber, Card):
-        return None
-    levels = list[Number]()
-    for line in chamber.lines:
-        first = line.pressures[0]
-        if not all(np.array_equal(pressure, first) for pressure in line.pressures):
-            return None
-        levels.append(first)
-    return levels
+    return levels_of_strokes(chamber) is not None
 
 
 # chambers that are always open to a pipe
@@ -113,7 +119,7 @@ def open_ends(drive: Drive, pipes: Mapping[str, Sequence[Number]]) -> Iterator[O
         if _alike(gas.work > 0):
             continue
         for end in ("head_end", "crank_end"):
-            levels = absolute_levels(gas, end, drive.machine.ambient)
+            levels = absolute_levels(drive, gas, end)
             if not levels or not all(_are_equal(level, levels[0]) for level in levels):
                 continue
             if _are_equal(levels[0], drive.machine.ambient):
@@ -122,14 +128,14 @@ def open_ends(drive: Drive, pipes: Mapping[str, Sequence[Number]]) -> Iterator[O
             for pipe, pressures in pipes.items():
                 if any(_are_equal(levels[0], pressure) for pressure in pressures):
                     joined = pipe
-            number = drive.cylinder.pistons.index(gas.piston)
-            yield OpenEnd(number, end == "head_end", gas.turned, joined)
+            yield OpenEnd(gas.number, end == "head_end", gas.turned, joined)
 
 
-def absolute_levels(gas: PistonGas, end: str, ambient: Number) -> list[Number]:
+def absolute_levels(drive: Drive, gas: PistonGas, end: str) -> list[Number]:
     """Return the absolute pressures in Pa of an end that has one on each stroke; none of another end."""
-    lift = 0.0 if gas.absolute else ambient
-    return [level + lift for level in _levels(gas.piston.chambers.get(end)) or ()]
+    lift = 0.0 if gas.absolute else drive.machine.ambient
+    card = drive.cylinder.pistons[gas.number].chambers.get(end)
+    return [level + lift for level in levels_of_strokes(card) or ()]
 
 
 def _are_equal(pressure: Number, other: Number) -> bool:
@@ -156,10 +162,12 @@ def displaced(
     is_derivative: bool = False,
     head_counts: bool = True,
     crank_counts: bool = True,
+    is_rigid: bool = False,
 ) -> Array:
     """Return dV/dφ in m³ of what the chambers of a piston deliver; on each stroke it is one of them.
 
-    is_suction: of what they draw in; is_derivative: d²V/dφ² instead; head_counts, crank_counts: whether that end does.
+    is_suction: of what they draw in; is_derivative: d²V/dφ² instead; head_counts, crank_counts: whether that end does;
+    is_rigid: of an incompressible liquid.
     """
     # of many machines the numbers of the piston of the state are those of the angles
     dimensions = state.drive.cylinder.pistons[piston.number]
@@ -174,4 +182,27 @@ def displaced(
     ratio = abs(dimensions.lever_ratio)
     area = np.where(state.direction > 0, ratio * outward_area, -(ratio * return_area))
     change = state.curvature if is_derivative else state.slope
+    if piston.opens_late and not is_rigid:
+        area = np.where(_is_open(state, piston, is_suction), area, 0.0)
     return area * np.asarray(change)
+
+
+def _is_open(state: State, piston: DrivenPiston, is_suction: bool) -> Array:
+    """Return whether the valve is open of the chamber that draws in, or delivers, on the stroke of each angle."""
+    # the chamber that grows draws in: on the outstroke the head end, unless a lever turns the piston round
+    moves_outward = (state.direction > 0) != piston.gas.turned
+    is_head = moves_outward if is_suction else np.logical_not(moves_outward)
+
+    # the fraction of its stroke from its smallest volume, on the side of a corner that is meant
+    within = State(state.drive, CrankAngle.of(state.within), state.within)
+    z = np.asarray(within.z)
+    from_head = 1 - z if piston.gas.turned else z
+    passed = np.where(is_head, from_head, 1 - from_head)
+
+    valve = 0 if is_suction else 1
+    index = state.drive.index
+    head_opens = spread(piston.head_opens[valve], index)
+    crank_opens = spread(piston.crank_opens[valve], index)
+    opens = np.where(is_head, head_opens, crank_opens)
+    is_open: Array = passed >= opens if is_suction else passed <= opens
+    return is_open

@@ -96,7 +96,9 @@ class Orders(NamedTuple):
 
     def at_speed(self, ratio: float) -> ComplexArray:
         """Return both together at a speed, over the nominal one."""
-        return self.gas if self.inertia is None else self.gas + ratio**2 * self.inertia
+        if self.inertia is None:
+            return self.gas
+        return self.gas + ratio**2 * self.inertia
 
     @property
     def whole(self) -> ComplexArray:
@@ -194,7 +196,9 @@ class MachineOrders(Results):
         above_mean = effort.M - effort.pieces.of(effort.mean)
         variance = effort.result(effort.pieces.mean(above_mean**2))
         varies = variance > 1e-28 * self.M_mean**2
-        return carried / where(varies, variance, math.nan) if some(varies) else None
+        if not some(varies):
+            return None
+        return carried / where(varies, variance, math.nan)
 
     @key_value("ν_H", "ratio", listed=True)
     def major_orders(self) -> Any:
@@ -210,4 +214,6 @@ class MachineOrders(Results):
             resultant = resultant + unit_vector(np.multiply.outer(self.orders, positions))
         are_in_phase = np.abs(resultant) >= (1 - _IN_PHASE) * len(self.cylinders)
         of_machines = tuple(tuple(self.orders[major].tolist()) for major in are_in_phase.T)
-        return of_machines[0] if self.effort.count is None else of_machines
+        if self.effort.count is not None:
+            return of_machines
+        return of_machines[0]

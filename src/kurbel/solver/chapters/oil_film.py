@@ -90,7 +90,9 @@ class FilmShape(NamedTuple):
     @property
     def finite(self) -> Any:
         """Λ, by which a film of this length differs from a short one."""
-        return 0.0 * self.lam if self.is_short else self.lam**2 / (1 + self.lam / 4)
+        if self.is_short:
+            return 0.0 * self.lam
+        return self.lam**2 / (1 + self.lam / 4)
 
     def mobility_number(self, omega: Any) -> Any:
         """Return K in 1/N at an angular velocity in rad/s."""
@@ -177,15 +179,15 @@ class FilmEquation:
 
     def known(self, pieces: Pieces) -> Array:
         """Return both parts of K F, and τ."""
-        known = pieces.carried(self._course, self._pieces)
+        course = pieces.resampled(self._course, self._pieces)
         load_share = pieces.of(self.share)
-        return known * np.stack((load_share, load_share, np.ones_like(load_share)))[:, None]
+        return course * np.stack((load_share, load_share, np.ones_like(load_share)))[:, None]
 
-    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
+    def rate(self, course: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return y′ = |K F| (M + y (y·M)) √(1 + y²) + ½ i τ y, and its derivative by y."""
-        size = np.hypot(known[0], known[1])
-        cos, sin = known[:2] / np.where(size > 0, size, 1.0)
-        half_turning = known[2] / 2
+        size = np.hypot(course[0], course[1])
+        cos, sin = course[:2] / np.where(size > 0, size, 1.0)
+        half_turning = course[2] / 2
         # along and across the load, with a complex step of either
         step = 1j * _STEP * np.eye(2)[:, :, None, None]
         p = cos * y[0] + sin * y[1] + step[0]
@@ -322,7 +324,7 @@ class OilFilm(Results):
         if self._count is None and self.obstacle:
             return {}
         # the extremes
-        parts = np.concatenate((self.y, self.pieces.carried(self._course, self._source)))
+        parts = np.concatenate((self.y, self.pieces.resampled(self._course, self._source)))
         largest, degrees = highest(self.pieces, parts, self._peaks)
         square = largest[0]
         eccentricity = np.sqrt(square / (1 + square))
@@ -354,8 +356,8 @@ class OilFilm(Results):
         """Return friction power in W and side flow in m³/s at the nodes of pieces."""
         shape = self.shape.of(pieces)
         omega = pieces.of(self._omega)
-        y = pieces.carried(self.y, self.pieces)
-        real, imaginary, turning = pieces.carried(self._course, self._source)
+        y = pieces.resampled(self.y, self.pieces)
+        real, imaginary, turning = pieces.resampled(self._course, self._source)
         pressed = real + 1j * imaginary
         seen = along_load(y, pressed)
         along, across = mobility(seen.real, seen.imag, shape.lam, shape.finite)

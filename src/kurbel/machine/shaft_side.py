@@ -134,7 +134,9 @@ class Rim(Record):
 def _rim_and_inertia(values: ValuesByKey) -> dict[str, object]:
     """Return what a rim determines of its flywheel: the moment of inertia if its sizes are given."""
     rim = values["rim"]
-    return {"rim": rim, "inertia": rim.inertia} if rim.sized_by else {"rim": rim}
+    if rim.sized_by:
+        return {"rim": rim, "inertia": rim.inertia}
+    return {"rim": rim}
 
 
 class Flywheel(Record):
@@ -204,7 +206,9 @@ class Flywheel(Record):
 
 def _cycle_name(cycle: str, turns: int) -> str:
     """Return the name of a working cycle; '' where the machine repeats after other turns than those of its cycle."""
-    return f"a {cycle} cycle" if turns == CYCLES[cycle] else ""
+    if turns != CYCLES[cycle]:
+        return ""
+    return f"a {cycle} cycle"
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,6 +228,10 @@ class Effort:
     def size(self) -> str:
         """How much is given."""
         return f"a diagram of {len(self.angles)} points"
+
+    def of_cycle(self, turns: int) -> "Effort":
+        """Return it for a cycle of so many turns of the shaft."""
+        return self
 
     def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, of so many turns of the shaft."""
@@ -260,6 +268,10 @@ class Harmonics:
         """How much is given."""
         return f"{len(self.terms)} harmonics"
 
+    def of_cycle(self, turns: int) -> "Harmonics":
+        """Return it for a cycle of so many turns of the shaft."""
+        return self
+
     def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, of so many turns of the shaft."""
         name = _cycle_name(cycle, turns) or f"{turns} turns"
@@ -285,6 +297,10 @@ class Swing:
     files: ClassVar[tuple[str, ...]] = ()
     notes: ClassVar[tuple[str, ...]] = ()
     alone: ClassVar[Literal[True]] = True
+
+    def of_cycle(self, turns: int) -> "Swing":
+        """Return it for a cycle of so many turns of the shaft."""
+        return self
 
     def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
         """Yield no rule: it fits every cycle."""

@@ -1,0 +1,60 @@
+"""The load `force` of a cylinder on what slides or swings, over the crank angle.
+
+    F = F_0 + F_V − k l x + f(z)        N, positive where x rises
+
+x: displacement from the inner dead centre, of what swings the angle on the lever l; z: its fraction of the stroke. The
+points of f are a card on an area of 1 m²: their corners are those of its lines. Constant parts and springs do no work
+over the cycle, so that W = l s ∮ f dz.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from kurbel.arrays import Indices, Number
+from kurbel.machine.load import Force
+from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms.setting import Setting
+from kurbel.numerics.arithmetic import spread
+from kurbel.numerics.pieces import Angles
+from kurbel.solver.gas import CardPressure
+
+
+class OutputLoad:
+    """The load on the output of a cylinder, of one machine or of `count`, whose numbers are then arrays (machines,).
+
+    turns: of the crank per working cycle. lever: in m, 1 where the output slides.
+    """
+
+    def __init__(self, force: Force, mechanism: Mechanism, turns: int, count: int | None) -> None:
+        self.force, self.turns = force, turns
+        self.stroke: Number = mechanism.stroke
+        self.lever: Number = 1.0 if force.lever is None else force.lever
+        self.profile: CardPressure | None = None
+        if force.profile is not None:
+            setting = Setting(mechanism, 360.0, head_end=True, ambient=0.0, absolute=False)
+            self.profile = CardPressure(force.profile, setting, count, None)
+
+    def without_points(self, displacement: Number, index: Indices | None) -> Number:
+        """Return constant part and spring in N at displacements of the output; index: the machine of each, if many."""
+        force = spread(self.force.constant + self.force.preload, index)
+        if self.force.spring is None:
+            return force
+        travel = displacement * spread(self.lever, index)
+        return force - travel * spread(self.force.spring, index)
+
+    @property
+    def starts(self) -> list[Angles]:
+        """The crank angles of a cycle at which the force bends or jumps, for each turn."""
+        if self.profile is None:
+            return []
+        corners = self.profile.starts
+        degrees = (corners.degrees + 360.0 * turn for turn in range(self.turns))
+        return [Angles(corners.machine, angles) for angles in degrees]
+
+    @cached_property
+    def work(self) -> Number:
+        """Work W in J per cycle that the load does on the output, negative where the machine moves it."""
+        if self.profile is None:
+            return 0.0 * self.stroke
+        return self.profile.area * self.stroke * self.lever * self.turns
