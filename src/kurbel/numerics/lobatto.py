@@ -12,7 +12,8 @@ from kurbel.arrays import Array
 class LobattoRule:
     """Lobatto nodes in [−1, 1], both ends included, and matrices that act on the values of a polynomial there.
 
-    weights (n,): of its integral; series (n, n): turns values into Chebyshev coefficients; slope: those into the
+    weights (n,): of its integral; series (n, n): turns values into Chebyshev coefficients; tail: its last rows, by
+    which a function counts as a polynomial, two of them, of four nodes one; slope: coefficients into the
     coefficients of the derivative, (n − 1, n); area (n, n): values into integrals from −1 to every node; scan_positions
     (m,): where a scan for changes of sign looks; scan, scan_slope (m, n): values into values and slopes there; halving
     (2n, n): into values at the nodes of both halves.
@@ -27,6 +28,7 @@ class LobattoRule:
         self.weights = 2 / (count * (count - 1) * legendre.legval(self.nodes, last) ** 2)
 
         self.series = np.linalg.inv(chebyshev(self.nodes, count))
+        self.tail = self.series[max(3, count - 2) :]
         self.slope = slope_of_series(count)
         self.area = chebyshev(self.nodes, count + 1) @ integral_of_series(count) @ self.series
         of_halves = np.concatenate((self.nodes - 1, self.nodes + 1)) / 2

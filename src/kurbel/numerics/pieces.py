@@ -559,7 +559,7 @@ def _halved_until_smooth(
             values = tested = [value[:, counts] for value in values]
 
         # smooth pieces are done, the others are halved
-        coefficients = [todo.rule.series[-2:] @ value for value in tested]
+        coefficients = [todo.rule.tail @ value for value in tested]
         tails = may_be_highest * np.array([np.abs(last).max(axis=0) for last in coefficients])
         is_rough = _find_rough(todo, tails, size, len(done))
         if not (done or is_rough.any()):

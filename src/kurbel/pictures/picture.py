@@ -47,7 +47,8 @@ class Axis(NamedTuple):
 class Curve(NamedTuple):
     """Points x, y (n,), one nan at a jump, more at a gap; of a moving curve (1 + m, n): at rest, then m in a loop.
 
-    kind: `line`, `faint` (to compare with, such as a mean), `dots` joined thinly, `beads`, `pole`; of mechanisms
+    kind: `line`, `faint` (to compare with, such as a mean), `cycles` (of which a line is the mean), `dots` joined
+    thinly, `beads`, `pole`; of mechanisms
     `guide`, `member`, `block`, the points `joint` and `fixed`, and `arrow`, a force from its first point to its second.
     look: its colour and stroke, where that is not its place among the lines of its panel.
     """

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
 from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
@@ -28,6 +28,10 @@ ZERO = "0 at every angle"
 _CROSSING = 1e-9
 """Share of the largest distance between two lines that counts as rounding error, where they cross."""
 _MOST_SHADES = 100
+_CROWDED = 10_000
+"""Angles, as those of the samples of a trace, of which a picture shows no more than there is room for."""
+_STRETCHES = 2000
+"""Stretches of a cycle with so many angles in which each quantity shows its lowest and highest point."""
 _JUMP = 1e-9  # of the height of a curve; a smaller step at a break is rounding
 NO_NAME = Words("")
 AROUND = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 121))
@@ -67,15 +71,24 @@ def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:
 
     breaks: crank angles (m,) in degrees between which all quantities are smooth; values: takes crank angles (n,), and
     angles (n,) that are on the same side of a break, and returns quantities (k, n). Intervals are halved where the
-    point in their middle is off the line.
+    point in their middle is off the line. Of a crowd of breaks the line goes from one telling break to the next.
     """
+    middles = (breaks[:-1] + breaks[1:]) / 2
+    shown: Indices = np.arange(len(breaks))
+    if len(breaks) > _CROWDED:
+        shown = _shown_breaks(breaks, values(breaks[:-1], middles))
+        breaks = breaks[shown]
+    # angles just after the beginning and just before the end of each piece
+    after = middles[shown[:-1]]
+    before = middles[shown[1:] - 1]
+
     # equal steps on each piece, both its ends included
     counts = np.ceil(np.diff(breaks) / _WIDEST).astype(int) + 1
     piece = np.repeat(np.arange(len(counts)), counts)
     first_of_piece = (counts.cumsum() - counts)[piece]
     share = (np.arange(len(piece)) - first_of_piece) / (counts - 1)[piece]
     degrees = np.interp(piece + share, np.arange(len(breaks)), breaks)
-    within = ((breaks[:-1] + breaks[1:]) / 2)[piece]
+    within = np.where(share < 1, after[piece], before[piece])
     points = values(degrees, within)
 
     # how far a point may be off the line; a constant has only rounding for its height
@@ -100,6 +113,47 @@ def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:
         if not len(left):
             break
     return Sampled(degrees, points)
+
+
+def _in_order(angles: Array) -> Array:
+    """Return different angles (n,) in ascending order."""
+    # not numpy.unique, which loads numpy.ma, a fifth of the whole start-up
+    ascending = np.sort(angles)
+    return ascending[np.diff(ascending, prepend=-np.inf) > 0]
+
+
+def _shown_breaks(breaks: Array, points: Array) -> Indices:
+    """Return which of a crowd of breaks (m,) a picture needs: the others are between points that it shows.
+
+    points: quantities (k, m - 1) just after each but the last.
+    """
+    is_shown = np.zeros(len(breaks), dtype=bool)
+    is_shown[telling(points, _STRETCHES)] = True
+    is_shown[-1] = True
+    # what is as wide as a stretch has both its ends
+    is_wide = np.diff(breaks) > (breaks[-1] - breaks[0]) / _STRETCHES
+    is_shown[:-1] |= is_wide
+    is_shown[1:] |= is_wide
+    return np.flatnonzero(is_shown)
+
+
+def telling(points: Array, stretches: int) -> Indices:
+    """Return which of very many points (k, m) in order a picture needs: first, lowest and highest of each stretch."""
+    # stretches of equally many points, the last one filled up with its last point
+    count = points.shape[1]
+    size = math.ceil(count / stretches)
+    starts = np.arange(0, count, size)
+    filled = np.pad(points, ((0, 0), (0, len(starts) * size - count)), mode="edge")
+    parts = filled.reshape(len(points), len(starts), size)
+    lowest = parts.argmin(axis=2) + starts
+    highest = parts.argmax(axis=2) + starts
+
+    is_telling = np.zeros(count, dtype=bool)
+    is_telling[starts] = True
+    is_telling[lowest] = True
+    is_telling[highest] = True
+    is_telling[-1] = True
+    return np.flatnonzero(is_telling)
 
 
 class Source:
@@ -152,7 +206,7 @@ class Source:
         id: str,
         lines: Sequence[CurveFormula],
         also: Iterable[float] = (),
-        breaks: Iterable[float] | None = None,
+        breaks: Sequence[float] | Array | None = None,
     ) -> Sampled:
         """Return lines over the cycle, with points at the angles `also`; id: of a column that is like them.
 
@@ -166,19 +220,22 @@ class Source:
             turned = cycle * np.floor(within / cycle)
             return self.values(lines, degrees - turned, within - turned)
 
-        # not numpy.unique, which loads numpy.ma, a fifth of the whole start-up
-        all_breaks = set(ends.tolist() if breaks is None else breaks)
-        all_breaks.update(angle for angle in also if 0 < angle < cycle)
-        samples = sampled(np.array(sorted(all_breaks)), values)
+        breaks_of_lines = ends if breaks is None else np.asarray(breaks)
+        points = np.array([angle for angle in also if 0 < angle < cycle])
+        samples = sampled(_in_order(np.concatenate((breaks_of_lines, points))), values)
         if not np.isfinite(samples.values).all():
             raise too_large(self.quantities[id])
         return samples
+
+    def key_value(self, id: str) -> Any:
+        """Return a key value of the results in SI, as it is computed."""
+        return self.results.rows.key_values[id].of(self.results)
 
     def extreme(self, id: str) -> Extreme | None:
         """Return the key value of this id, if there is one and it is an extreme."""
         if id not in self.key_values:
             return None
-        value = self.results.rows.key_values[id].of(self.results)
+        value = self.key_value(id)
         return value if isinstance(value, Extreme) else None
 
     def marks(self, id: str, place: Callable[[float], float | complex] = float) -> tuple[Mark, ...]:
@@ -211,7 +268,7 @@ class Source:
         faint: bool = False,
         zero: bool = False,
         also: Iterable[float] = (),
-        breaks: Iterable[float] | None = None,
+        breaks: Sequence[float] | Array | None = None,
         title: str = "",
         words: Mapping[str, str] = NO_WORDS,
     ) -> Panel:
@@ -363,6 +420,10 @@ def in_units(panel: Panel, system: str) -> Panel:
     for kind, arrays in values_of_kinds.items():
         sizes = [float(np.nanmax(np.abs(values))) for values in arrays if values.size]
         units[kind] = shown_unit(kind, system, max(sizes, default=0.0)) if kind else ""
+    for mark in panel.marks:
+        kind = mark.figure.kind
+        if kind and kind not in units:
+            units[kind] = shown_unit(kind, system, abs(mark.figure.value or 0.0))
     x = partial(convert, kind=panel.x.kind, unit=units[panel.x.kind])
     y = partial(convert, kind=panel.y.kind, unit=units[panel.y.kind])
 

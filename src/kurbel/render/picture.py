@@ -49,7 +49,9 @@ def legend_text(words: Words, look: Look) -> str:
 def figure_text(figure: PageFigure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
     name = symbol(figure.name, look)
-    at = "" if figure.at_deg is None else look.degrees(figure.at_deg)
+    at = ""
+    if figure.at_deg is not None:
+        at = look.fine(look.degrees(figure.at_deg))
     if figure.value is None:
         return f"{name} {at}".strip()
     value, unit = look.measured(figure.value, figure.unit)
@@ -107,9 +109,7 @@ def axis_scale(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisSc
 
     is_level = high - low <= _ROUNDING * max(abs(low), abs(high))
     if axis.log:
-        # whole powers of ten
-        low = 10.0 ** math.floor(math.log10(low))
-        high = 10.0 ** math.ceil(math.log10(high) or 1)
+        low, high = _log_values(low, high)[[0, -1]].tolist()
     elif level and is_level:
         low -= 0.1 * abs(low) or 1.0
         high += 0.1 * abs(high) or 1.0
@@ -131,14 +131,34 @@ def ticks(scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:
         values = [float(number) for number in range(len(axis.names)) if low <= number <= high]
         texts = [axis.names[int(value)] for value in values]
     elif axis.log:
-        powers = range(round(math.log10(low)), round(math.log10(high)) + 1)
-        stride = max(1, math.ceil(len(powers) / most))
-        values = [10.0**power for power in powers[::stride]]
-        texts = [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
+        round_values = _log_values(low, high)
+        stride = max(1, math.ceil(len(round_values) / most))
+        values = round_values[::stride].tolist()
+        if high < _MOST_FEW * low:
+            texts = [look.fine(f"{value:g}") for value in values]
+        else:
+            texts = [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
     else:
         values = _round_values(low, high, most, in_degrees=axis.unit == "deg")
         texts = _texts_of_ticks(values, look)
     return [(float(scale.place(value)), text) for value, text in zip(values, texts)]
+
+
+_MOST_FEW = 1000.0
+"""Largest over smallest value of a logarithmic axis below which it has 2 and 5 of each power of ten, too."""
+
+
+def _log_values(low: float, high: float) -> Array:
+    """Return the powers of ten from below to above two values; of few powers also 2 and 5 of each."""
+    first = math.floor(math.log10(low))
+    last = math.ceil(math.log10(high) or 1)
+    powers: Array = np.asarray(10.0 ** np.arange(first, last + 1), dtype=float)
+    if high >= _MOST_FEW * low:
+        return powers
+    values = np.sort(np.concatenate((powers, 2 * powers[:-1], 5 * powers[:-1])))
+    begin = np.searchsorted(values, low * (1 + _ROUNDING), side="right") - 1
+    end = np.searchsorted(values, high * (1 - _ROUNDING))
+    return values[begin : max(end, begin + 1) + 1]
 
 
 def _round_values(low: float, high: float, most: int, in_degrees: bool) -> list[float]:

@@ -101,7 +101,8 @@ PAIRS = """\
 
 PICTURE = """\
 text{font-family:system-ui,"DejaVu Sans",sans-serif;font-size:10px}.h{font-size:13px;font-weight:600}
-.m{stroke-width:4;stroke-linecap:round}.f,.g,.x{stroke-width:1}.o,.b,.i{stroke-width:1.2}.f,.g,.x,.m{fill:none}
+.m{stroke-width:4;stroke-linecap:round}.f,.g,.x{stroke-width:1}.o,.b,.i{stroke-width:1.2}.f,.g,.q,.x,.m{fill:none}
+.q{stroke-width:.5;stroke-opacity:.5}
 .halo{paint-order:stroke;stroke-width:3px;stroke-linejoin:round}
 .k0,.k1,.k2,.k3,.k4,.k5{fill:none;stroke-width:1.6}.j0,.j1,.j2,.j3,.j4,.j5{fill:none;stroke-width:1.2}
 .k1{stroke-dasharray:8 3}.k2{stroke-dasharray:2 2.5}.k3{stroke-dasharray:9 3 2 3}
@@ -112,7 +113,7 @@ text{font-family:system-ui,"DejaVu Sans",sans-serif;font-size:10px}.h{font-size:
 @media(max-width:520px){.mark,.force{font-size:19px}}
 """
 PICTURE_COLOURS = """\
-.s{background:var(--paper)}text{fill:var(--ink)}.halo{stroke:var(--paper)}.f{stroke:var(--faint)}.g{stroke:var(--grid)}
+.s{background:var(--paper)}text{fill:var(--ink)}.halo{stroke:var(--paper)}.f,.q{stroke:var(--faint)}.g{stroke:var(--grid)}
 .x,.m,.o,.b,.i{stroke:var(--ink)}.o{fill:var(--paper)}.b{fill:var(--grid)}.i{fill:var(--ink)}
 .p{fill:var(--gain)}.n{fill:var(--loss)}
 .k0,.j0{stroke:var(--line0)}.k1,.j1{stroke:var(--line1)}.k2,.j2{stroke:var(--line2)}

@@ -418,7 +418,8 @@ def _curve(frame: PanelFrame, curve: Curve, number: int) -> str:
         for piece in pieces:
             dots += "".join(_dot(point, figure) for point in piece)
         return _shape(f"j{number}", lines) + _shape(f"c{number}", dots)
-    return _shape({"member": "m", "block": "b"}.get(curve.kind, "f"), lines)
+    look = {"member": "m", "block": "b", "cycles": "q"}.get(curve.kind, "f")
+    return _shape(look, lines)
 
 
 def _arrow(frame: PanelFrame, moments: Sequence[Curve]) -> str:

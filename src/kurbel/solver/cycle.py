@@ -104,9 +104,7 @@ class SampledCylinder:
         """Largest last coefficients of the Chebyshev series on pieces that could be halved, over the largest value."""
         values = np.stack(_known(self.pieces, _smooth(self.samples)))
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
-        tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[
-            :, self.pieces.half > NARROWEST
-        ]
+        tails = np.abs(self.pieces.rule.tail @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
         return float((tails.max(axis=1) / size).max())
 
     # extremes and zeros
@@ -258,7 +256,8 @@ def _smooth(state: State) -> list[Number | None]:
         columns += [state.P_gas, state.P, state.N, state.T]
         columns += state.rubbing or ()
     for offer in state.mechanism.OFFERS:
-        if offer.quantity.extremes:
+        # no force depends on an approximation of the books
+        if offer.quantity.extremes and not offer.quantity.of_book:
             columns.append(offer.of(state))
     return columns
 

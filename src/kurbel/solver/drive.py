@@ -30,6 +30,8 @@ _IDLE = 1e-4
 """Mean indicated pressure in Pa that is rounding: such a piston neither drives nor is driven."""
 _DENSE = 600
 """Breaks of a cycle, as at the samples of a trace, from which on its pieces are short enough for 6 nodes."""
+_DENSEST = 200_000
+"""The same for 4 nodes: what cubics miss on so short pieces is rounding."""
 
 
 class ExactRod(NamedTuple):
@@ -222,8 +224,12 @@ class Drive:
             bends.append(Angles(owners, np.mod(ends + between, self.cycle)))
         machine = np.concatenate([angles.machine for angles in bends])
         degrees = np.concatenate([angles.degrees for angles in bends])
-        is_dense = len(degrees) >= _DENSE * count
-        return Pieces.between(Angles(machine, degrees), count, self.cycle, 6 if is_dense else 16)
+        nodes = 16
+        if len(degrees) >= _DENSE * count:
+            nodes = 6
+        if len(degrees) >= _DENSEST * count:
+            nodes = 4
+        return Pieces.between(Angles(machine, degrees), count, self.cycle, nodes)
 
     def centrifugal(self, mass: Number) -> Number:
         """Return the centrifugal force m R ω² in N of a mass in kg at the crank pin; 0 where no speed is given."""

@@ -268,12 +268,17 @@ FEWEST = 5
 
 
 class Exponent(NamedTuple):
-    """An exponent, its standard error, the scatter of ln p about the line, and the mean pressure on it in Pa."""
+    """An exponent, its standard error, the scatter of ln p about the line, and the mean pressure on it in Pa.
+
+    log_volume, log_pressure: means of ln V, over the stroke volume, and of ln p, through which the line goes.
+    """
 
     value: float
     error: float
     scatter: float
     level: float
+    log_volume: float
+    log_pressure: float
 
 
 def exponent(
@@ -302,11 +307,12 @@ def polytrope(setting: Setting, clearance: float, after: Array, absolute: Array)
     """Return −d ln p/d ln V by least squares of samples (n,); None for too few, or not above the vacuum."""
     if len(absolute) < _ON_A_LINE or not (absolute > 0).all():
         return None
-    volumes = setting.stroke_fraction(after) + clearance
-    x = np.log(volumes)
-    x = x - x.mean()
-    y = np.log(absolute)
-    y = y - y.mean()
+    log_volumes = np.log(setting.stroke_fraction(after) + clearance)
+    log_pressures = np.log(absolute)
+    log_volume = float(log_volumes.mean())
+    log_pressure = float(log_pressures.mean())
+    x = log_volumes - log_volume
+    y = log_pressures - log_pressure
     spread = float(x @ x)
     if spread <= 0:
         return None
@@ -314,7 +320,12 @@ def polytrope(setting: Setting, clearance: float, after: Array, absolute: Array)
     rest = y - slope * x
     variance = float(rest @ rest) / (len(x) - 2)
     return Exponent(
-        0.0 - slope, math.sqrt(variance / spread), math.sqrt(variance), float(absolute.mean())
+        value=0.0 - slope,
+        error=math.sqrt(variance / spread),
+        scatter=math.sqrt(variance),
+        level=float(absolute.mean()),
+        log_volume=log_volume,
+        log_pressure=log_pressure,
     )
 
 

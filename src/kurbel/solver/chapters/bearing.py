@@ -343,8 +343,8 @@ def unloaded(pieces: Pieces, load: ComplexArray, contact: float) -> Array:
     turns = np.mod(-begins, 360.0) - 360.0 + begins  # they begin above 0° and up to 360°
     begins, ends = begins - turns, ends - turns
     bounds = np.searchsorted(pieces.machine, np.arange(pieces.count + 1)).tolist()
-    arcs = [*zip(begins.tolist(), ends.tolist())]
-    return np.transpose([unreached(arcs[first:last]) for first, last in pairwise(bounds)])
+    gaps = [unreached(begins[first:last], ends[first:last]) for first, last in pairwise(bounds)]
+    return np.transpose(gaps)
 
 
 @lru_cache
@@ -354,25 +354,29 @@ def _outward(count: int) -> Array:
     return chebyshev(np.array([-1.0, 1.0]), count - 2) @ np.linalg.inv(chebyshev(inner, count - 2))
 
 
-def unreached(arcs: Sequence[tuple[float, float]]) -> tuple[float, float]:
+def unreached(begins: Array, ends: Array) -> tuple[float, float]:
     """Return how many degrees of a circle no arc covers, and the middle of the widest gap, of equal ones the first.
 
-    arcs: their beginnings, above 0° and up to 360°, and ends. nan without a gap, or without an arc.
+    begins (n,): of the arcs, above 0° and up to 360°; ends (n,). nan without a gap, or without an arc.
 
-    >>> unreached([(10.0, 100.0), (190.0, 360.0)])
+    >>> unreached(np.array([190.0, 10.0]), np.array([360.0, 100.0]))
     (100.0, 145.0)
     """
-    if not arcs:
+    if not len(begins):
         return math.nan, math.nan
-    reached = max(end for _, end in arcs) - 360.0
+    # how far the circle is covered before each arc: by the arcs before it, the first by those of the turn before
+    order = np.argsort(begins)
+    begin = begins[order]
+    covered = np.maximum.accumulate(np.append(ends.max() - 360.0, ends[order]))
+    gaps = begin - covered[:-1]
+
     uncovered, widest, middle = 0.0, 0.0, math.nan
-    for begin, end in sorted(arcs):
-        gap = begin - reached
-        if gap > 0:
-            uncovered += gap
+    for number in np.flatnonzero(gaps > 0).tolist():
+        gap = float(gaps[number])
+        uncovered += gap
         if gap > widest + _EQUAL:
-            widest, middle = gap, begin - gap / 2
-        reached = max(reached, end)
+            widest = gap
+            middle = float(begin[number]) - gap / 2
     return uncovered, float(_axial(np.asarray(middle - 360.0 * np.rint(middle / 360.0)), _EQUAL))
 
 
