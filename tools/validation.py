@@ -15,7 +15,7 @@ import kurbel
 from kurbel.crank_angle import CrankAngle
 from kurbel.crank_formulas import first_order_acceleration, first_order_displacement
 from valve_prints import PRINTS, Print
-from worked_examples import FOLDER, SI, TABLE, told
+from worked_examples import FOLDER, SI, TABLE, printed_answer
 
 _ROOT = Path(__file__).parent.parent
 _WATERWORKS = _ROOT / "configs" / "waterworks.yaml"
@@ -156,7 +156,7 @@ def _figures(row: dict[str, Any]) -> list[float]:
     """Return kurbel's figures in the unit of the source, counted as the source counts."""
     if "back" in row:
         return [row.get("strict", row["exact"])]
-    values = told(row)
+    values = printed_answer(row)
     factor = SI[row["unit"]] * row.get("times", 1)
     return [
         (one - row.get("plus", 0)) / factor

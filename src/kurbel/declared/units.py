@@ -48,7 +48,7 @@ KINDS = {
     "mass": Kind(
         1e-12,
         1e18,
-        f"{_MASSES}; tonne, long ton, short ton, mg",
+        f"{_MASSES}; tonne, long ton, short ton",
         "kg",
         ("kg", "t"),
         None,
@@ -222,6 +222,7 @@ KINDS = {
         1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"
     ),
     "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K", written="287 J/kg K"),
+    "fuel": Kind(1e-15, 1e6, f"mg, {_MASSES}", "kg", ("mg", "g", "kg"), "g", "lb", "35 mg"),
     "heating_value": Kind(
         0,
         1e12,

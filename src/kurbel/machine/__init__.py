@@ -370,7 +370,11 @@ class Machine(Record):
         except RuleError as error:
             raise RuleError(*error.faults, *faults) from None
         refuse(*faults)
-        return machine
+        if machine.effort is None:
+            return machine
+        # the cycles of a recording
+        effort = machine.effort.of_cycle(machine.revolutions)
+        return machine if effort is machine.effort else replace(machine, effort=effort)
 
     @classmethod
     def faults_of_some(cls, values: ValuesByKey) -> list[Fault]:

@@ -1,6 +1,7 @@
 """A turning effort known from elsewhere, as the machine file gives it: by points, a file, harmonics, or its swing."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -8,8 +9,6 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.record import Rule, ValuesByKey, alternative
 from kurbel.declared.units import DiagramPoint, UnitFactor
-from kurbel.errors import refused
-from kurbel.machine.cylinder import MOST_TURNS
 from kurbel.machine.measured import Columns
 from kurbel.machine.shaft_side import (
     HARMONICS,
@@ -25,7 +24,7 @@ from kurbel.machine.shaft_side import (
     in_unit,
     points_of,
 )
-from kurbel.traces.cycles import Laps, samples_of_file
+from kurbel.traces.cycles import Laps, cut, joined, samples_of_file
 
 
 class KnownEffort(Columns):
@@ -106,16 +105,12 @@ class KnownEffort(Columns):
             cls.layout(layout),
             "torque",
             lambda torques: torques * multiplier / divisor,
-            most_turns=MOST_TURNS,
+            most_turns=_MOST_RECORDED,
         )
-        if len(samples.values) > 1:
-            lap = samples.angles[-1] - samples.angles[0]
-            refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")
-        angles, torques = _from_zero(samples, angle_zero)
         notes = samples.notes
         if samples.completed:
             notes = (*notes, "the closing sample is missing; the first one closes the cycle")
-        return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), notes)
+        return RecordedEffort.of_laps(samples, angle_zero, file, notes)
 
 
 _FORMS = ("points", "file", "harmonics", "swing", "coefficient")
@@ -133,14 +128,120 @@ def _rules_of_mean(values: ValuesByKey, forms: list[str]) -> Iterator[Rule]:
         yield Rule("mean", True, message)
 
 
-def _from_zero(samples: Laps, angle_zero: float) -> tuple[Array, Array]:
+# a recording, and the mean of its cycles
+
+_MOST_RECORDED = 10_000
+"""Turns of the shaft in one recording."""
+_LEAST_ALIKE = 0.5
+"""Correlation of each cycle and the next one below which they are no repetitions."""
+_PAIRED = 0.25
+"""Squared difference of cycles and the next but one, over that of neighbours, below which pairs are the cycles."""
+_NOISE = 1e-3
+"""Squared difference of neighbours, over the squared swing, that needs no second look."""
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedEffort(Effort):
+    """A diagram from a file: one cycle, or many one after the other, of which the machine knows the length.
+
+    laps: as they were read, of which angles and torques are the mean; zero: the angle in the file of the dead centre.
+    """
+
+    laps: Laps | None = None
+    zero: float = 0.0
+
+    @classmethod
+    def of_laps(
+        cls, laps: Laps, zero: float, file: str, notes: tuple[str, ...]
+    ) -> "RecordedEffort":
+        """Return the effort of these laps, the mean of which is one cycle."""
+        angles, torques = _from_zero(laps.angles, laps.values.mean(axis=0), zero)
+        return cls(tuple(angles.tolist()), tuple(torques.tolist()), (file,), notes, laps, zero)
+
+    def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine, of so many turns of the shaft."""
+        cycles = self._cycles(turns)
+        if cycles is None:
+            yield from self._rules_of_another_length(cycle, turns)
+            return
+        if len(cycles.values) == 1:
+            return
+        swing = cycles.values - cycles.values.mean()
+        square = (swing**2).mean()
+        is_unlike = (swing[1:] * swing[:-1]).mean() < _LEAST_ALIKE * square
+        counts_on = self.laps is not None and len(self.laps.values) == 1
+        if is_unlike and counts_on:
+            yield from super().rules_of_cycle(cycle, turns)
+            return
+        degrees = f"{360 * turns:g} deg"
+        advice = "'cycle: four-stroke', or " if turns == 1 else ""
+        message = (
+            f"the {len(cycles.values)} cycles of {degrees} in it are not alike; write {advice}"
+            "'cycle_turns', the turns of the shaft after which everything repeats, or keep one cycle"
+        )
+        yield Rule("file", is_unlike, message)
+        if len(cycles.values) > 2 and not is_unlike:
+            neighbours = ((swing[1:] - swing[:-1]) ** 2).mean()
+            next_but_one = ((swing[2:] - swing[:-2]) ** 2).mean()
+            is_paired = neighbours > _NOISE * square and next_but_one < _PAIRED * neighbours
+            advice = "cycle: four-stroke" if turns == 1 else f"cycle_turns: {2 * turns}"
+            message = f"the cycles of {degrees} differ in pairs; write '{advice}' at the top"
+            yield Rule("file", is_paired, message)
+
+    def _rules_of_another_length(self, cycle: str, turns: int) -> Iterator[Rule]:
+        """Yield that its laps make no cycle of so many turns."""
+        count = 1 if self.laps is None else len(self.laps.values)
+        if count == 1:
+            yield from super().rules_of_cycle(cycle, turns)
+            return
+        message = (
+            f"has {count} laps of {self.angles[-1]:g} deg, the cycle {360 * turns:g} deg; write "
+            "'cycle_turns', the turns of the shaft after which everything repeats"
+        )
+        yield Rule("file", True, message)
+
+    def of_cycle(self, turns: int) -> Effort:
+        """Return the mean of its cycles of so many turns; itself where it is one diagram."""
+        cycles = self._cycles(turns)
+        if cycles is None:
+            return self
+        count = len(cycles.values)
+        if count == 1 and cycles is self.laps:
+            return self
+        notes = self.notes
+        if count > 1:
+            notes = (*notes, f"the mean of {count} cycles of {360 * turns:g} deg counts")
+        return self.of_laps(cycles, self.zero, self.files[0], notes)
+
+    def _cycles(self, turns: int) -> Laps | None:
+        """Return the cycles of so many turns in its laps; None where these are a diagram of another length."""
+        laps = self.laps
+        if laps is None:
+            return None
+        angles = laps.angles
+        lap = round((angles[-1] - angles[0]) / 360)
+        count = len(laps.values)
+        if lap == turns:
+            return laps
+        # one diagram repeats within the cycle, several laps are parts of it
+        if turns % lap == 0 and count == 1:
+            return None
+        if turns % lap == 0:
+            parts = turns // lap
+            return joined(laps, parts) if count >= parts else None
+        # cycles that count on; two turns are taken for a four-stroke cycle
+        is_cut = lap % turns == 0 and lap > 2
+        return cut(laps, lap // turns) if is_cut else None
+
+
+def _from_zero(recorded: Array, values: Array, angle_zero: float) -> tuple[Array, Array]:
     """Return the angles (n,) in degrees from 0 to the end of the cycle, and the torques (n,), straight in between."""
     # two periods, of which the first begins in (−period, 0]
-    period = float(round(samples.angles[-1] - samples.angles[0]))
-    shifted = samples.angles - angle_zero
+    period = float(round(recorded[-1] - recorded[0]))
+    shifted = recorded - angle_zero
     shifted = shifted - period * np.ceil(shifted[0] / period)
     angles = np.concatenate([shifted, shifted + period])
-    torques = np.tile(samples.values[0], 2)
+    torques = np.tile(values, 2)
     # the samples inside of one cycle, and the torques at its ends
     first = np.searchsorted(angles, 0.0, side="right")
     last = np.searchsorted(angles, period, side="left")

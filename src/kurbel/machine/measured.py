@@ -82,10 +82,13 @@ class Columns(Record):
         absent="0",
         needs="file",
     )
+    sheet = alternative(
+        str, "Sheet of a workbook (xlsx), by its name", absent="the first", needs="file"
+    )
     delimiter = alternative(
         (*DELIMITERS, *DELIMITERS.values()),
         "Separator of the columns",
-        absent="comma",
+        absent="comma; of a workbook its cells",
         also=("separator", "sep"),
         needs="file",
     )
@@ -125,7 +128,7 @@ class Columns(Record):
         if columns is None:
             columns = (keys.pop(f"{cls.what}_column", 2),)
         # a delimiter by its word, or as the sign itself
-        delimiter = keys.pop("delimiter", "comma")
+        delimiter = keys.pop("delimiter", "")
         words = {sign: word for word, sign in DELIMITERS.items()}
         return Layout(columns, delimiter=words.get(delimiter, delimiter), **keys)
 
@@ -147,6 +150,9 @@ class Motored(Record):
         "Thermodynamic loss angle: how far heat loss and leakage move the peak ahead of the dead centre",
         least=0,
         example="0.7 deg",
+    )
+    sheet: str | None = field(
+        str, "Its sheet, of a workbook", absent="as that of the trace", example="motored"
     )
 
 
@@ -321,6 +327,8 @@ def dead_centre(
     base: turns figures of the file into Pa; against: its angles count against the rotation.
     """
     file = motored.motored
+    if motored.sheet is not None:
+        layout = layout._replace(sheet=motored.sheet)
     try:
         samples = samples_of_file(file, layout, "pressure", base, against)
         if samples.clock is not None and samples.clock.is_free:

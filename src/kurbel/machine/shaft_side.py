@@ -229,6 +229,10 @@ class Effort:
         """How much is given."""
         return f"a diagram of {len(self.angles)} points"
 
+    def of_cycle(self, turns: int) -> "Effort":
+        """Return it for a cycle of so many turns of the shaft."""
+        return self
+
     def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, of so many turns of the shaft."""
         last = self.angles[-1]
@@ -264,6 +268,10 @@ class Harmonics:
         """How much is given."""
         return f"{len(self.terms)} harmonics"
 
+    def of_cycle(self, turns: int) -> "Harmonics":
+        """Return it for a cycle of so many turns of the shaft."""
+        return self
+
     def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, of so many turns of the shaft."""
         name = _cycle_name(cycle, turns) or f"{turns} turns"
@@ -289,6 +297,10 @@ class Swing:
     files: ClassVar[tuple[str, ...]] = ()
     notes: ClassVar[tuple[str, ...]] = ()
     alone: ClassVar[Literal[True]] = True
+
+    def of_cycle(self, turns: int) -> "Swing":
+        """Return it for a cycle of so many turns of the shaft."""
+        return self
 
     def rules_of_cycle(self, cycle: str, turns: int) -> Iterator[Rule]:
         """Yield no rule: it fits every cycle."""

@@ -41,7 +41,7 @@ class Wiebe(EngineCard, Record):
         "energy", "Heat of the fuel per cycle in this chamber", "Q", least=0, example="1.5 kJ"
     )
     _fuel = alternative(
-        "mass",
+        "fuel",
         "Mass of fuel per cycle in this chamber, instead of `heat`",
         least=0,
         instead="heat",

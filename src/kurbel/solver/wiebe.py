@@ -30,6 +30,8 @@ from kurbel.solver.figures import result
 
 CHORD = 1.0
 """Degrees over which rates are measured, as those of traces."""
+_MARGIN = 10.0
+"""Degrees before and after the heat release that a picture of it shows, too."""
 _CENTRE = 360.0
 """Where the chamber's dead centre is in the pieces, which hold one compression before and one expansion after it."""
 
@@ -65,14 +67,20 @@ class WiebePressure:
     steep: ClassVar[bool] = False
 
     def __init__(self, card: Wiebe, setting: Setting, area: Number, count: int | None) -> None:
-        self.card, self.setting, self.count = card, setting, count
+        self.card = card
+        self.setting = setting
+        self.count = count
         stroke_volume = area * setting.mechanism.stroke
         self._heat = (card.kappa - 1) * card.heat_to_gas / stroke_volume
+
+        # the dead centres of the cycle, from that at which the chamber fires
+        firing = setting.own_dead_centre
         inner, outer = setting.mechanism.dead_centres()
-        own, other = (inner, outer) if setting.head_end else (outer, inner + 360.0)
-        self.expansion = other - own
-        turns = np.arange(setting.cycle / 360.0) * 360.0
-        self._dead_centres = [centre + turn for turn in turns for centre in (own, other)]
+        opposite = outer if setting.head_end else inner + 360.0
+        self.expansion = opposite - firing
+        self._dead_centres: list[Number] = []
+        for turn in range(round(setting.cycle / 360.0)):
+            self._dead_centres += [firing + 360.0 * turn, opposite + 360.0 * turn]
 
         # the pieces of one compression and one expansion, with the integral K at their nodes
         self._machines = np.arange(count or 1)
@@ -81,7 +89,9 @@ class WiebePressure:
         self._pieces, (growth,) = refined(pieces, lambda pieces: [self._growth_of_integral(pieces)])
         self._integral = self._pieces.running(growth)
 
-        breaks = [*self._dead_centres, own + card.start, own + card.start + card.duration]
+        # where the pressure bends or jumps
+        begin = firing + card.start
+        breaks = [*self._dead_centres, begin, begin + card.duration]
         starts = self._angles(*breaks, origin=0.0)
         self.starts = Angles(starts.machine, np.mod(starts.degrees, setting.cycle))
 
@@ -169,6 +179,7 @@ class WiebePressure:
 
         z, degrees: (n,), or (nodes, n) of pieces; machine: of each, (n,); remaining: not needed.
         """
+        # the stroke, and the degrees after the dead centre before which the chamber compresses
         cycle = self.setting.cycle
         first, *later = (spread(centre, machine) for centre in self._dead_centres)
         since = np.mod(within - first, cycle)
@@ -318,11 +329,21 @@ class WiebeHeat:
     """
 
     def __init__(self, card: Wiebe, expansion: Number, count: int | None) -> None:
-        self.card, self.expansion, self.count = card, expansion, count
+        self.card = card
+        self.expansion = expansion
+        self.count = count
         last = card.burnt(np.broadcast_to(expansion, (count or 1,)), expansion)
         self._last: Number = result(last, count)
         self.supplied: Number = card.heat
         self.total: Number = card.heat_to_gas * self._last
+
+    @property
+    def span(self) -> tuple[Any, Any]:
+        """The degrees from the firing dead centre between which heat is released, with a margin at either end."""
+        last = self.expansion
+        if not self.card.runs_on:
+            last = np.minimum(self.card.start + self.card.duration + _MARGIN, last)
+        return np.maximum(self.card.start - _MARGIN, self.expansion - 360.0), last
 
     def burnt_at(self, after: Array, machine: Indices | None = None) -> Array:
         """Return the burnt share x_b of what is released, at so many degrees after the firing dead centre."""

@@ -11,7 +11,7 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array, Flags, Indices
 from kurbel.declared.forms.values import out_of_size
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, NotANumber, RuleError
@@ -38,17 +38,23 @@ class Recording:
     """Samples in the order of time, which one step after another puts in order and closes to laps.
 
     angles (n,) in degrees; values (k, n); rows (n,): of which row each is; notes: what was changed. place: of a row, as
-    a fault that lacks a message; most_turns: of the shaft in one cycle; step: degrees from row to row of a lap, where
-    laps have angles of their own.
+    a fault that lacks a message; most_turns: of the shaft in one cycle; is_drawn: a stretch between equal values is a
+    line of the diagram and not a hole; step: degrees from row to row of a lap, where laps have angles of their own.
     """
 
     def __init__(
-        self, angles: Array, values: Array, place: Callable[[int], Fault], most_turns: int = 2
+        self,
+        angles: Array,
+        values: Array,
+        place: Callable[[int], Fault],
+        most_turns: int = 2,
+        is_drawn: bool = False,
     ) -> None:
         self.angles = angles
         self.values = values
         self.rows = np.arange(len(angles))
         self.most_turns = most_turns
+        self.is_drawn = is_drawn
         self.step = 0.0
         self.notes: list[str] = []
         self._location_of_row = place
@@ -176,7 +182,8 @@ def whole_cycles(
     angles (n,) in degrees; values (k, n) in the base of their kind, a row for each measured column; place: names a row;
     against: angles count against the rotation; most_turns: of the shaft in one cycle.
     """
-    recording = Recording(-angles if against else angles, values, place, most_turns)
+    is_drawn = kind == "torque"
+    recording = Recording(-angles if against else angles, values, place, most_turns, is_drawn)
     _refuse_no_numbers(recording, kind)
     if kind == "pressure":
         _refuse_no_samples(recording)
@@ -310,7 +317,7 @@ def _lay_over_one_lap(recording: Recording) -> None:
 
     # where the whole laps begin and the last one ends
     angles = recording.angles
-    step = usual_step(angles)
+    step = usual_step(np.diff(angles))
     span = angles[-1] - angles[0]
     laps = int((span + 1.5 * min(step, lap / 20)) // lap)
     starts = angles[0] + lap * np.arange(laps + 1)
@@ -320,33 +327,79 @@ def _lay_over_one_lap(recording: Recording) -> None:
         return
     _refuse_large_holes(recording, angles)
 
-    # laps at equal angles keep these, others get those of all laps
-    count = int(bounds[1])
-    end = int(bounds[-1])
-    offsets = lap * np.arange(laps)[:, np.newaxis]
-    from_samples: Indices = np.arange(count)
-    shared: Array = angles[:count]
-    has_equal_angles = False
-    if (counts == count).all():
-        differences = angles[:end].reshape(laps, count) - shared - offsets
-        has_equal_angles = bool(np.abs(differences).max() <= _SAME_ANGLE * lap / count)
-    if has_equal_angles:
-        values = recording.values[:, :end].reshape(-1, count)
-    else:
-        shared, from_samples = _angles_of_all(angles[:end], bounds, lap)
+    laid = laid_over_one(angles, recording.values, bounds, lap)
+    if not laid.has_equal_angles:
         recording.step = step
-        columns = [np.interp(shared + offsets, angles, column) for column in recording.values]
-        values = np.concatenate(columns)
-
+    end = int(bounds[-1])
     if not begins_anew:
-        _refuse_unlike_laps(recording, values, recording.values[0, end : end + count])
-    if len(angles) - end > _REST * count:
+        _refuse_unlike_laps(recording, laid.values, recording.values[0, end : end + int(counts[0])])
+    if len(angles) - end > _REST * counts[0]:
         recording.notes.append(
             f"the {len(angles) - end} samples after lap {laps} of {lap:g} deg are left out"
         )
-    recording.keep(from_samples)
-    recording.angles = shared
-    recording.values = values
+    recording.keep(laid.samples)
+    recording.angles = laid.angles
+    recording.values = laid.values
+
+
+class LaidOver(NamedTuple):
+    """Laps over the same angles (n,) in degrees: values (m, n), and of which sample each angle is."""
+
+    angles: Array
+    values: Array
+    samples: Indices
+    has_equal_angles: bool
+
+
+def laid_over_one(angles: Array, columns: Array, bounds: Indices, lap: float) -> LaidOver:
+    """Return the laps of columns (k, n) one below the other; those at equal angles keep these.
+
+    angles (n,): rising over all laps of so many degrees; bounds (m + 1,): index of the first sample of each lap, and
+    of the first one after the last lap.
+    """
+    laps = len(bounds) - 1
+    count = int(bounds[1])
+    end = int(bounds[-1])
+    offsets = lap * np.arange(laps)[:, np.newaxis]
+    if (np.diff(bounds) == count).all():
+        first = angles[:count]
+        differences = angles[:end].reshape(laps, count) - first - offsets
+        if np.abs(differences).max() <= _SAME_ANGLE * lap / count:
+            values = columns[:, :end].reshape(-1, count)
+            return LaidOver(first, values, np.arange(count), True)
+
+    # others get the angles of all laps
+    shared, samples = _angles_of_all(angles[:end], bounds, lap)
+    of_columns = [np.interp(shared + offsets, angles, column) for column in columns]
+    return LaidOver(shared, np.concatenate(of_columns), samples, False)
+
+
+def joined(laps: Laps, parts: int) -> Laps:
+    """Return cycles of so many laps each, one after the other; laps after the last whole cycle are left out."""
+    lap = laps.angles[-1] - laps.angles[0]
+    count = len(laps.values) // parts
+    open_angles = laps.angles[:-1]
+    angles = np.add.outer(lap * np.arange(parts), open_angles).ravel()
+    values = laps.values[: count * parts, :-1].reshape(count, -1)
+    return laps._replace(
+        angles=np.append(angles, open_angles[0] + parts * lap),
+        values=np.append(values, values[:, :1], axis=1),
+    )
+
+
+def cut(laps: Laps, parts: int) -> Laps:
+    """Return so many cycles, each of equal length, that one lap consists of; each at the angles of all."""
+    (values,) = laps.values
+    begin = laps.angles[0]
+    cycle = float(laps.angles[-1] - begin) / parts
+    step = usual_step(np.diff(laps.angles))
+    starts = begin + cycle * np.arange(parts + 1)
+    bounds = np.searchsorted(laps.angles, starts - min(1e-6 * cycle, step / 2))
+    laid = laid_over_one(laps.angles, values[np.newaxis], bounds, cycle)
+    return laps._replace(
+        angles=np.append(laid.angles, laid.angles[0] + cycle),
+        values=np.append(laid.values, laid.values[:, :1], axis=1),
+    )
 
 
 def _refuse_unlike_laps(recording: Recording, values: Array, rest: Array) -> None:
@@ -456,7 +509,8 @@ def _closed(recording: Recording) -> Laps:
     # more is missing than the closing sample
     end = float(angles[0]) + period
     missing = end - float(angles[-1])
-    step = max(usual_step(angles), recording.step)
+    is_line = _level_lines(recording, np.diff(angles))
+    step = max(usual_step(np.diff(angles)[~is_line]), recording.step)
     if missing > 1.5 * step:
         recording.refuse_hole(-1, angles[-1], end, _unit_advice(angles))
 
@@ -501,17 +555,35 @@ def _number_rows(angles: Array) -> bool:
 def _refuse_large_holes(recording: Recording, angles: Array) -> None:
     """Raise RuleError where a stretch without samples is wide, in degrees and in median steps."""
     steps = np.diff(angles)
-    rising = np.sort(steps[steps > 0])
-    median = float(rising[len(rising) // 2])
-    limit = min(max(degrees, times * median) for degrees, times in _LARGE_HOLES)
-    large = np.flatnonzero(steps > limit)
+    is_line = _level_lines(recording, steps)
+    large = np.flatnonzero(_is_large(steps) & ~is_line)
     if len(large):
         i = int(large[0])
         recording.refuse_hole(i, angles[i], angles[i + 1])
 
 
-def usual_step(angles: Array) -> float:
-    """Return the step in degrees such that no wider ones cover half of the angle: a denser stretch is no rule."""
-    steps = np.sort(np.diff(angles))
+def _is_large(steps: Array) -> Flags:
+    """Return which of steps (n,) in degrees are too wide for a straight line between samples."""
+    rising = np.sort(steps[steps > 0])
+    median = float(rising[len(rising) // 2])
+    limit = min(max(degrees, times * median) for degrees, times in _LARGE_HOLES)
+    return steps > limit
+
+
+def _level_lines(recording: Recording, steps: Array) -> Flags:
+    """Return which of steps (n,) in degrees are wide, and a level line that a diagram has instead of many samples."""
+    if not recording.is_drawn:
+        return np.zeros(len(steps), dtype=bool)
+    is_level = (np.diff(recording.values) == 0).all(axis=0)
+    is_level = np.append(is_level, np.zeros(len(steps) - len(is_level), dtype=bool))
+    return _is_large(steps) & is_level
+
+
+def usual_step(steps: Array) -> float:
+    """Return the step of those (n,) in degrees such that no wider ones cover half of the angle.
+
+    A denser stretch is no rule.
+    """
+    steps = np.sort(steps)
     passed = np.cumsum(steps)
     return float(steps[np.searchsorted(passed, passed[-1] / 2)])

@@ -12,6 +12,7 @@ import re
 import warnings
 from collections.abc import Callable, Iterator
 from functools import lru_cache
+from importlib.util import find_spec
 from typing import NamedTuple
 
 import numpy as np
@@ -49,7 +50,8 @@ class Layout(NamedTuple):
 
     columns: those of what was measured, counted from 1; angle_step: degrees from row to row, where no column has
     angles; recorded_speed: revolutions per second, for times; pulse_column: of pulses of a wheel with so many teeth, of
-    which some are missing, instead of angles; skip_rows: lines above the first figures.
+    which some are missing, instead of angles; skip_rows: lines above the first figures; delimiter: '' for the usual one,
+    a comma in a text; sheet: of a workbook, by its name, None for the first; rows: what a row is called in messages.
     """
 
     columns: tuple[int, ...] = (2,)
@@ -61,8 +63,10 @@ class Layout(NamedTuple):
     teeth: int = 1
     missing_teeth: int = 0
     skip_rows: int = 0
-    delimiter: str = "comma"
+    delimiter: str = ""
     decimal: str = "point"
+    sheet: str | None = None
+    rows: str = "line"
 
     @property
     def wanted(self) -> tuple[int, ...]:
@@ -118,7 +122,7 @@ class Table(NamedTuple):
 
 def read_table(file: str, layout: Layout) -> Table:
     """Return the columns of a file; raises RuleError with the first line that cannot be read."""
-    text = text_of(file)
+    text, layout = _text_and_layout(file, layout)
     if layout.delimiter == layout.decimal and '"' not in text:
         refused(
             "a comma cannot be both in numbers and between columns; write 'delimiter: semicolon'",
@@ -126,7 +130,7 @@ def read_table(file: str, layout: Layout) -> Table:
         )
     numbers = _numbers(text, layout)
     if not numbers.size:
-        lines = "line" if layout.skip_rows == 1 else f"{layout.skip_rows} lines"
+        lines = layout.rows if layout.skip_rows == 1 else f"{layout.skip_rows} {layout.rows}s"
         below = f" below its first {lines}" if layout.skip_rows else ""
         refused(f"{os.path.basename(file)} has no figures{below}", "file")
     if numbers.size > MOST_NUMBERS:
@@ -148,9 +152,27 @@ def read_table(file: str, layout: Layout) -> Table:
     def line(index: int) -> str:
         rows = itertools.islice(_figure_lines(text, layout), index + first_row, None)
         number, _ = next(rows)
-        return f"line {number}"
+        return f"{layout.rows} {number}"
 
     return Table(angles, numbers[:, -len(layout.columns) :].T, line)
+
+
+def _text_and_layout(file: str, layout: Layout) -> tuple[str, Layout]:
+    """Return the text of a file, and the layout with what is usual in such a file."""
+    raw = _bytes_of(file)
+    if is_workbook(raw):
+        text = _sheet_text()(raw, os.path.basename(file), layout.sheet, max(layout.wanted))
+        return text, layout._replace(delimiter=layout.delimiter or "tab", rows="row")
+    if layout.sheet is not None:
+        name = os.path.basename(file)
+        refused(f"{name} is no workbook; leave 'sheet' out", "sheet")
+    return text_of(raw, file), layout._replace(delimiter=layout.delimiter or "comma")
+
+
+def _sheet_text() -> Callable[[bytes, str, str | None, int], str]:
+    from kurbel.traces.workbook import sheet_text
+
+    return sheet_text
 
 
 @lru_cache(maxsize=4)
@@ -180,7 +202,7 @@ def _numbers(text: str, layout: Layout) -> Array:
         number = layout.skip_rows + body.count("\n", 0, split.start()) + 1
         row = f": '{_shown(split[0])}'" if _shown(split[0]) else ""
         message = (
-            f"line {number}{row} has whole numbers in its columns, or has a decimal comma before its last "
+            f"{layout.rows} {number}{row} has whole numbers in its columns, or has a decimal comma before its last "
             "digits, which begin with 0; export the file with decimal points, or with semicolons between columns and "
             "write 'delimiter: semicolon' and 'decimal: comma'"
         )
@@ -200,8 +222,11 @@ def _figure_lines(text: str, layout: Layout) -> Iterator[tuple[int, str]]:
 # the bytes of a file
 
 _LONGEST_LINE = 10_000
+_ZIP = b"PK\x03\x04"
+_WORKBOOK = b"xl/workbook.xml"
+"""Name of a file in each Excel workbook from 2007 on, which is a zip archive."""
 _FOREIGN = {
-    b"PK\x03\x04": "an Excel or other workbook, or a zip archive",
+    _ZIP: "an Excel or other workbook, or a zip archive",
     b"\xd0\xcf\x11\xe0": "an old Excel workbook (xls)",
     b"TDSm": "a TDMS file of LabVIEW",
     b"MDF ": "an MDF file of a measuring system",
@@ -214,27 +239,35 @@ _FOREIGN = {
 """First bytes of files that are mistaken for tables -> what they are."""
 
 
-def text_of(file: str) -> str:
-    """Return the text of a file with line feeds alone; figures are ASCII, headings may be in any encoding.
-
-    UTF-16 is known by its mark, or by the zero in every other byte of its figures. Raises RuleError for what is too
-    large, or no text.
-    """
+def _bytes_of(file: str) -> bytes:
+    """Return the bytes of a file; raises RuleError for what is too large, or cannot be read."""
     try:
         if os.path.getsize(file) > LARGEST_FILE:
             refused(
                 f"is larger than {LARGEST_FILE // 2**20} MiB; thin out the samples{LIMITS}", "file"
             )
         with open(file, "rb") as stream:
-            raw = stream.read()
+            return stream.read()
     except OSError as error:
         refused(f"cannot be read: {error.strerror or error}", "file")
+
+
+def is_workbook(raw: bytes) -> bool:
+    """Return whether these are the bytes of an Excel workbook that can be read here: openpyxl is installed."""
+    return raw.startswith(_ZIP) and _WORKBOOK in raw and find_spec("openpyxl") is not None
+
+
+def text_of(raw: bytes, file: str) -> str:
+    """Return the text of the bytes of a file with line feeds alone; headings may be in any encoding, figures are ASCII.
+
+    UTF-16 is known by its mark, or by the zero in every other byte of its figures. Raises RuleError for what is no text.
+    """
     for begin, what in _FOREIGN.items():
         if raw.startswith(begin):
-            refused(
-                f"{os.path.basename(file)} is {what}, no text; export its table of figures as CSV",
-                "file",
-            )
+            advice = "; export its table of figures as CSV"
+            if _WORKBOOK in raw and begin == _ZIP:
+                advice += ", or install openpyxl, with which kurbel reads xlsx"
+            refused(f"{os.path.basename(file)} is {what}, no text{advice}", "file")
 
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
@@ -267,7 +300,9 @@ def _first_fault(text: str, layout: Layout) -> Fault:
         if len(cells) < last_column:
             shown_line = _shown(line)
             row = f": {shown_line}" if shown_line else ""
-            return Fault(("file",), f"line {number} has no column {last_column}{row}{advice}")
+            return Fault(
+                ("file",), f"{layout.rows} {number} has no column {last_column}{row}{advice}"
+            )
         # the cell as it is written, where that is certain
         as_written = line.split(layout.between)
         cell = cells[column - 1]
@@ -275,7 +310,7 @@ def _first_fault(text: str, layout: Layout) -> Fault:
             cell = as_written[column - 1].strip()
         shown_cell = _shown(cell)
         wrong = f"'{shown_cell}' is no number" if shown_cell else f"column {column} holds no number"
-        return Fault(("file",), f"line {number}: {wrong}{advice}")
+        return Fault(("file",), f"{layout.rows} {number}: {wrong}{advice}")
     return Fault(("file",), "its rows cannot be read as numbers")
 
 
@@ -323,7 +358,7 @@ def _advice(text: str, number: int, cells: list[str], column: int, layout: Layou
     # or what the line looks like
     rows_as_given = rows_of_layouts[0]
     if rows_as_given and rows_as_given[0] < number - 1:
-        return "; leave such lines out, or correct them"
+        return f"; leave such {layout.rows}s out, or correct them"
     if cell:
         has_digit = any(character.isdigit() for character in cell)
         return _PLAIN if has_digit else _NO_FIGURES
