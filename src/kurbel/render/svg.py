@@ -32,6 +32,8 @@ _MARGIN = 8.0
 """Around the pictures of a file."""
 _TALL, _SHORT = 250.0, 170.0
 """Height of a panel among at most two and of one among several."""
+_TALL_ROW = 340.0
+"""Height of a row of panels from which on it takes more room in print than others."""
 _GUTTER = 14.0
 """Between panels that are next to each other."""
 _BOLD = 8.3
@@ -76,7 +78,8 @@ def svg_rows(picture: Picture, look: Look) -> Iterator[str]:
     height = panel_height(picture)
     for row in picture.rows:
         tall, items = _drawn(row, look, False, height, headed=False)
-        yield _svg(items, WIDTH, tall, 1.0, picture_text(row, look))
+        look_of_row = "s tall" if tall > _TALL_ROW else "s"
+        yield _svg(items, WIDTH, tall, 1.0, picture_text(row, look), name=look_of_row)
 
 
 def sheet_svg(picture: Picture, look: Look, height: float, medium: Medium) -> tuple[float, str]:
@@ -96,8 +99,16 @@ def poster_svg(panel: Panel, look: Look, wide: bool) -> str:
     return _svg(items, room, tall, 6.0, panel.title, picture_css(paper=True))
 
 
-def _svg(items: str, wide: float, tall: float, margin: float, title: str, style: str = "") -> str:
-    """Return an element with its title; style: of a file of its own."""
+def _svg(
+    items: str,
+    wide: float,
+    tall: float,
+    margin: float,
+    title: str,
+    style: str = "",
+    name: str = "s",
+) -> str:
+    """Return an element with its title; style: of a file of its own; name: of its class."""
     box = f"{-margin:g} {-margin:g} {wide + 2 * margin:g} {tall + 2 * margin:g}"
     if style:
         size = f'width="{wide + 2 * margin:g}" height="{tall + 2 * margin:g}"'
@@ -105,7 +116,7 @@ def _svg(items: str, wide: float, tall: float, margin: float, title: str, style:
         items = f"<style>{style}</style>\n{items}"
     else:
         head = "<svg"
-    return f'{head} class="s" viewBox="{box}" role="img">\n<title>{escape(title)}</title>\n{items}</svg>\n'
+    return f'{head} class="{name}" viewBox="{box}" role="img">\n<title>{escape(title)}</title>\n{items}</svg>\n'
 
 
 def panel_height(picture: Picture) -> float:
