@@ -39,7 +39,7 @@ TEACHING = {
     "odd-fire-v6": "free-orders",
     "offset-engine": "mechanism",
     "plunger-pump": "flow",
-    "petrol-engine": "card-volume",
+    "petrol-engine": "heat-release",
     "press": "effort",
     "pumpjack": "mechanism",
     "punch": "effort",

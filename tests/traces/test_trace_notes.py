@@ -400,3 +400,22 @@ def test_a_dead_centre_two_degrees_off_is_seen_by_both_exponents(
     keys, _, _ = obeyed(notes[0], "", "absolute", "four-stroke")
     assert "angle_zero" in keys
     assert float(re.findall(r"-?[0-9.]+", keys)[0]) == pytest.approx(degrees, abs=1.0)
+
+
+@pytest.mark.parametrize("zero", [-4.0, 4.0])
+def test_samples_far_apart_show_the_dead_centre_to_half_a_step(tmp_path: Path, zero: float) -> None:
+    """4° off is nothing that samples 10° apart could show; samples 0.4° apart do."""
+    keys = f", compression_ratio: 15, angle_zero: {zero:g} deg"
+    angles = np.arange(0.0, 720.0, 10.0)
+    coarse = written(tmp_path, angles, absolute(ENGINE, angles))
+    assert notes_of(machine_text(coarse, keys)) == []
+    (note,) = notes_of(machine_text(written(tmp_path, FINE, absolute(ENGINE, FINE)), keys))
+    assert re.search(r"a dead centre [0-9.]+ ± [0-9.]+ deg off does that", note)
+
+
+def test_a_coarse_trace_against_the_rotation(tmp_path: Path) -> None:
+    """Samples 10° apart, the peak one of them before the dead centre, and a fired engine that takes work."""
+    angles = np.arange(0.0, 720.0, 10.0)
+    file = written(tmp_path, angles, absolute(ENGINE, -angles))
+    for keys in ("", ", compression_ratio: 15"):
+        assert "'angle_sense: against'" in notes_of(machine_text(file, keys))[0]

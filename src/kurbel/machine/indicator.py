@@ -229,10 +229,9 @@ class Card(StrokeCard, Record):
     def flat(self) -> bool:
         """Whether each line is one pressure, as those of an ideal pump."""
         for line in self.lines:
-            for p in line.pressures:
-                is_same = np.ndim(p) == 0 and p == line.pressures[0]
-                if not is_same:
-                    return False
+            first = line.pressures[0]
+            if not all(np.array_equal(pressure, first) for pressure in line.pressures):
+                return False
         return True
 
     @property
