@@ -16,6 +16,7 @@ from kurbel.render.picture import (
     axis_text,
     legend_text,
     looks_of,
+    panel_title,
     picture_text,
     symbol,
     ticks,
@@ -222,7 +223,7 @@ def _panel(
 
     # curves, and forces, which alone move
     moving = ""
-    resting = _text(-5j, look.text(panel.title), "note") if panel.plain else ""
+    resting = _text(-5j, panel_title(panel, look), "note") if panel.plain else ""
     for curve, number in zip(panel.curves, looks_of(panel)):
         is_at_rest = curve.x.ndim == 1 or paper
         if is_at_rest:
@@ -354,7 +355,7 @@ def _legend(frame: PanelFrame, left: float) -> list[LegendRow]:
     """Return what is above a panel: its title, what runs upward, and of several curves each with its stroke."""
     panel, look = frame.panel, frame.look
     texts: list[tuple[str, int | None]] = [
-        (look.text(panel.title), None),
+        (panel_title(panel, look), None),
         (axis_text(panel.y, look), None),
     ]
     lines = [pair for pair in zip(panel.curves, looks_of(panel)) if pair[0].kind == "line"]
