@@ -148,7 +148,7 @@ def _text_without_zero(text: str, reading: Reading, path: Path, reference: str) 
     advice = other_zero(unit, reference, "this pressure")
     if key == "ambient":
         advice = f"'{unit}' is {zero}, but the ambient is absolute; write the absolute pressure in {plain}"
-    elif reference:
+    elif "indicator" in path:
         advice = (
             f"'{unit}' is {zero}, but 'pressures: {reference}' holds here; "
             f"write 'pressures: {zero}', or the {reference} pressure in {plain}"
