@@ -229,7 +229,7 @@ def describe(
             continue
         is_shared = name in properties  # with another mechanism, where it may need nothing
         properties.setdefault(name, {**_of(form, definitions), "description": key.description})
-        if key.instead:
+        if key.instead and not key.compared:
             rules.append(_none_of([[name, key.instead]]))
         if key.needs and not is_shared:
             rules.append({"dependencies": {name: [key.needs]}})
@@ -273,7 +273,7 @@ def _describe_variant(
 
 def _demands(form: RecordForm) -> Schema:
     """Return the schema of the keys that must be given."""
-    names = required(form.keys)
+    names = required(form.keys, form.keys)
     if not names:
         return {}
     return {"required": names}
