@@ -45,8 +45,8 @@ if TYPE_CHECKING:
     from kurbel.machine import Cylinder as Cylinder
     from kurbel.machine import Machine as Machine
     from kurbel.machine.parts import Piston as Piston
-    from kurbel.machine_file import load as load
-    from kurbel.machine_file import loads as loads
+    from kurbel.machine_file.from_python import load as load
+    from kurbel.machine_file.from_python import loads as loads
     from kurbel.mechanisms import Mechanism as Mechanism
     from kurbel.mechanisms.slider_crank import SliderCrank as SliderCrank
     from kurbel.notebook import Case as Case
@@ -62,8 +62,8 @@ _HOMES = {
     "SliderCrank": "kurbel.mechanisms.slider_crank",
     "draw": "kurbel.notebook",
     "find": "kurbel.designs.api",
-    "load": "kurbel.machine_file",
-    "loads": "kurbel.machine_file",
+    "load": "kurbel.machine_file.from_python",
+    "loads": "kurbel.machine_file.from_python",
     "sweep": "kurbel.designs.api",
 }
 """Public name -> module; nothing is imported before it is used, so that the command line starts quickly."""

@@ -41,3 +41,25 @@ def first_order_acceleration(sin: N, cos: N, lam: N) -> N:
     0.4
     """
     return cos + lam * (cos * cos - sin * sin)
+
+
+# what the first-order formulas miss, without the cancellation of a difference; 1 − cos ψ = λ² sin²φ/(1 + cos ψ)
+
+
+def displacement_error(sin: N, cos_psi: N, lam: N) -> N:
+    """Return (x_0 − x)/R = −λ³ sin⁴φ/(2 (1 + cos ψ)²)."""
+    share = sin * sin / (1 + cos_psi)
+    return -lam * lam * lam * share * share / 2
+
+
+def velocity_error(sin: N, cos: N, cos_psi: N, lam: N) -> N:
+    """Return (c_0 − c)/v = −λ³ sin³φ cos φ/(cos ψ (1 + cos ψ))."""
+    return -lam * lam * lam * sin * sin * sin * cos / (cos_psi * (1 + cos_psi))
+
+
+def acceleration_error(sin: N, cos: N, cos_psi: N, lam: N) -> N:
+    """Return (b_0 − b) R/v² = −λ³ sin²φ [cos 2φ/(cos ψ (1 + cos ψ)) + cos²φ/cos³ψ]."""
+    cos_2_phi = cos * cos - sin * sin
+    of_swing = cos_2_phi / (cos_psi * (1 + cos_psi))
+    of_bend = cos * cos / (cos_psi * cos_psi * cos_psi)
+    return -lam * lam * lam * sin * sin * (of_swing + of_bend)

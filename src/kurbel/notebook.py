@@ -1,6 +1,7 @@
 """Results in a notebook: the tables of the reports, and pictures, which are imported when they are shown."""
 
 import os
+import warnings
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -23,7 +24,19 @@ class ShownCase(solved.Case):
     """A machine with its results; machine: given itself, or as the path or the text of a machine file."""
 
     def __init__(self, machine: Machine | str | os.PathLike[str], count: int | None = None) -> None:
-        super().__init__(machine_of(machine), count)
+        described = machine_of(machine)
+        super().__init__(described, count)
+        if described.origin is None:
+            _warn_of_numbers(described)
+
+
+def _warn_of_numbers(machine: Machine) -> None:
+    """Warn of a machine that was made in Python with numbers that are not in SI: mm for m, say."""
+    from kurbel.notes.plausible import doubts_of
+
+    for doubt in doubts_of(machine):
+        warnings.warn(f"numbers are in SI: {doubt}", stacklevel=4)
+        return
 
 
 Case = ShownCase
@@ -34,6 +47,10 @@ class Drawing(NamedTuple):
     """Pictures of a machine, one below the other; a notebook shows them."""
 
     pictures: "tuple[Picture, ...]"
+
+    def __repr__(self) -> str:
+        names = ", ".join(picture.id for picture in self.pictures)
+        return f"<kurbel drawing of {names}: .save('NAME.svg'), .pictures>"
 
     def _repr_svg_(self) -> str:
         from kurbel.render import Look

@@ -176,7 +176,7 @@ class Quantity(NamedTuple):
         comma = "," if "_" in self.symbol else "_"
         plain = self.plain and f"{self.plain}{comma}{end}"
         symbol, text = f"{self.symbol}{comma}{end}", f"{_LARGEST[end]} {self.called}"
-        return Quantity(f"{self.id}_{end}", symbol, self.kind, text, plain)
+        return Quantity(f"{self.id}_{end}", symbol, self.kind, text, plain, of_book=self.of_book)
 
 
 def first_words(sentence: str) -> str:

@@ -7,6 +7,7 @@ import mpmath as mp
 import pytest
 
 from kurbel.crank_angle import CrankAngle
+from kurbel.mechanisms.link_rod import LinkedPiston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from machines import one_cylinder
 
@@ -80,3 +81,26 @@ def test_displacement_keeps_its_digits_near_the_inner_dead_centre(offset: float)
     assert float(mechanism.coordinate(CrankAngle.of(degrees))) == pytest.approx(
         float(true), rel=1e-9
     )
+
+
+@pytest.mark.parametrize("lam", [0.6, 0.25, 1e-4])
+def test_the_errors_of_the_first_order_against_60_digits(lam):
+    """Without the cancellation of a difference: at λ = 1e-4 that of x is 1e-13 R."""
+    degrees = [17.0, 90.0, 123.0, 301.0]
+    state = one_cylinder(SliderCrank(lam, 1.0), rpm=60 / math.tau).at(degrees)
+    with mp.workdps(60):
+        ratio = mp.mpf(lam)
+
+        def missing(phi):
+            exact = (1 - mp.sqrt(1 - (ratio * mp.sin(phi)) ** 2)) / ratio
+            return ratio * (ratio * mp.sin(phi) ** 2 / 2 - exact)
+
+        for order, id in enumerate(("x_error", "c_error", "b_error")):
+            wanted = [float(mp.diff(missing, mp.radians(angle), order)) for angle in degrees]
+            # c is zero at 90 deg
+            assert state[id] == pytest.approx(wanted, rel=1e-12, abs=1e-12 * lam**4)
+
+
+def test_link_rods_have_neither_approximations_nor_errors_of_them():
+    offered = [offer.quantity.id for offer in LinkedPiston.OFFERS]
+    assert not [id for id in offered if id.endswith(("_book", "_error"))]

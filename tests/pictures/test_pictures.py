@@ -10,6 +10,7 @@ from scipy.integrate import trapezoid
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert
 from kurbel.errors import UsageError
+from kurbel.machine_file import loads
 from kurbel.pictures.picture import Panel, Picture
 from kurbel.pictures.picture_source import PictureOptions, sampled
 from kurbel.pictures.pictures import PICTURES, pictures
@@ -18,6 +19,7 @@ from kurbel.render.braille import braille
 from kurbel.render.picture import PanelFrame, picture_text
 from kurbel.render.svg import PAPER_SIZES
 from kurbel.render.text import plain_lines
+from kurbel.solver.case import Case
 from representative import case_of
 
 LINES = {
@@ -342,3 +344,58 @@ def test_a_diagram_that_would_be_a_line_or_empty_is_left_out() -> None:
 def test_a_degree_is_next_to_its_number() -> None:
     text = picture_text(drawn("shaper", "motion")[0], Look())
     assert "θ_max 22.02°, 112.02°" in text
+
+
+# rod load of compressors, and what the approximations miss
+
+
+COMPRESSOR = """
+speed: 300 rpm
+stroke: 300 mm
+rod_ratio: 5
+bore: 300 mm
+crank_end_rod: 60 mm
+masses: {other: 150 kg, connecting_rod: 90 kg}
+indicator:
+  pressures: absolute
+  head_end: {compressor: {suction: 1 bar, delivery: 6 bar, clearance: 0.1, exponent: 1.3}}
+  crank_end: mirrored
+"""
+
+
+def test_the_rod_load_is_gas_and_inertia_within_its_limits() -> None:
+    limits = "limits: {rod_compression_max: 30 kN, rod_tension_max: 20 kN}\n"
+    (picture,) = pictures(Case(loads(COMPRESSOR + limits)), ("rod-load",), PictureOptions())
+    (panel,) = picture.panels
+    curves = {curve.name.symbol: curve for curve in panel.curves}
+    phi = np.arange(0.0, 360.0, 7.0)
+    load, gas, inertia = (
+        np.interp(phi, curves[symbol].x, curves[symbol].y) for symbol in ("P_G", "P_gas", "−m b")
+    )
+    assert load == pytest.approx(gas + inertia, abs=2e-3 * np.abs(load).max())
+    assert curves["limit of P_G,d"].y.tolist() == pytest.approx([30.0, 30.0])
+    assert curves["limit of P_G,z"].y.tolist() == pytest.approx([-20.0, -20.0])
+    # where it reverses it is zero
+    reversals = [mark.x for mark in panel.marks if mark.figure.name.symbol == "J"]
+    assert len(reversals) == 2
+    assert np.interp(reversals, curves["P_G"].x, curves["P_G"].y) == pytest.approx(0, abs=0.02)
+    assert "API 618: 15°, 3 %" in panel.title
+
+
+def test_rod_loads_are_drawn_of_compressors_alone() -> None:
+    assert "rod-load" in ids_of("compressor")
+    for name in ("triplex-pump", "punch", "diesel-two-stroke"):
+        assert "rod-load" not in ids_of(name)
+
+
+def test_the_error_of_the_approximations_is_largest_where_it_is_marked() -> None:
+    """L/R = 4 at 90°: x = R + L − √(L² − R²) exactly, and R (1 + λ/2) by the book."""
+    machine = loads("{speed: 60 rpm, crank: 200 mm, rod_ratio: 4}")
+    (picture,) = pictures(Case(machine), ("approximations",), PictureOptions())
+    displacement = picture.panels[0]
+    missing = 200.0 * (1 + 1 / 8) - (200.0 + 800.0 - np.sqrt(800.0**2 - 200.0**2))
+    lowest = min(displacement.marks, key=lambda mark: mark.y)
+    assert (lowest.x, lowest.y) == pytest.approx((90.0, missing), rel=1e-9)
+    assert displacement.title == f"at most {-missing / 4:.2g} % of s"
+    infinite = loads("{speed: 60 rpm, crank: 200 mm, rod_ratio: infinite}")
+    assert "approximations" not in ids_of(Case(infinite))

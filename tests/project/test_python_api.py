@@ -4,6 +4,8 @@ Figures are those of the command line: the same machine, the same quantity, whic
 """
 
 import math
+import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -209,3 +211,90 @@ def test_a_figure_prints_as_people_read_it() -> None:
     assert str(case["T_max"]) == "10.00 kN at 90.00°"
     assert str(case["power"]) == "8.000 kW"
     assert str(case["stroke"]) == "800.0 mm"
+
+
+# messages, and numbers that are not in SI
+
+WRONG: dict[str, Callable[[], object]] = {
+    "'overrides' crank=4: crank: 4 has no unit": lambda: kurbel.load(WATERWORKS, ["crank=4"]),
+    "'overrides' crank: write KEY=VALUE": lambda: kurbel.loads("{crank: 1 m}", "m", ["crank"]),
+    "'case' x: no such load case": lambda: kurbel.load(WATERWORKS, case="x"),
+    "'columns': no key value 'zzz'": lambda: kurbel.sweep(WATERWORKS, {"bore": [0.4]}, "zzz"),
+    "zzz: the file has no value": lambda: kurbel.sweep(WATERWORKS, {"zzz": [0.4]}),
+    "inputs['limits.c_max']: limits are the same": lambda: kurbel.sweep(
+        "{crank: 1 m, rod: 5 m, speed: 1 rps, limits: {c_max: 9 m/s}}", {"limits.c_max": [5.0]}
+    ),
+    "give vary={KEY: (low, high)} and wanted='KEY_VALUE = value'": lambda: kurbel.find(
+        WATERWORKS, {"bore": (0.4, 0.5)}
+    ),
+    "vary['bore']: the range goes from 0.5 m up to 0.4 m": lambda: kurbel.find(
+        WATERWORKS, {"bore": (0.5, 0.4)}, "T_max = 90 kN"
+    ),
+    "'where' c_max < 5: ": lambda: kurbel.find(
+        WATERWORKS, {"bore": (0.4, 0.5)}, "T_max = 90 kN", where="c_max < 5"
+    ),
+    "a bound has 'where'": lambda: kurbel.find(WATERWORKS, {"bore": (0.4, 0.5)}, "T_max < 9 kN"),
+    "'where' leaves out 1 that has it": lambda: kurbel.find(
+        WATERWORKS, {"bore": (0.4, 0.5)}, "T_max = 90 kN", where="c_max < 1 m/s"
+    ),
+}
+
+
+@pytest.mark.parametrize("message", WRONG)
+def test_messages_name_parameters_and_no_options(message: str) -> None:
+    with pytest.raises(kurbel.KurbelError) as caught:
+        WRONG[message]()
+    assert message in str(caught.value)
+    assert "--" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("key", "numbers", "message"),
+    [
+        ("bore", [68.0], "bore = 68 m, as numbers are in SI: a bore of 68 m is beyond"),
+        ("bore", [0.44, 450.0], "bore = 450 m, as numbers are in SI: "),
+        ("speed", [3000.0], "speed = 3000 rps, as numbers are in SI: a speed of 180000 rpm"),
+        ("crank", [400.0], "crank = 400 m, as numbers are in SI: a stroke of 800 m"),
+        ("masses.reciprocating", [8.3e5], "= 830000 kg, as numbers are in SI: a mass of 830 t"),
+        ("ambient", [1.01325], "ambient = 1.01325 Pa, as numbers are in SI: an ambient"),
+    ],
+)
+def test_numbers_in_other_units_are_doubted(key: str, numbers: list[float], message: str) -> None:
+    machine = (
+        "{speed: 50 rpm, crank: 400 mm, rod: 900 m, bore: 450 mm, ambient: 1 bar, "
+        "masses: {reciprocating: 830 kg}, indicator: {head_end: 5 bar}}"
+    )
+    with pytest.warns(UserWarning, match="numbers are in SI") as caught:
+        kurbel.sweep(machine, {key: numbers}, "stroke")
+    (warning,) = caught
+    assert message in str(warning.message)
+    assert warning.filename == __file__
+
+
+def test_numbers_near_those_of_the_file_are_not_doubted() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        kurbel.sweep(WATERWORKS, {"bore": np.linspace(0.1, 1.5, 4)}, "stroke")
+        kurbel.find(WATERWORKS, {"bore": (0.4, 0.5)}, "T_max = 90 kN")
+
+
+def test_ranges_and_machines_in_other_units_are_doubted() -> None:
+    with pytest.warns(UserWarning, match="bore = 400 m, as numbers are in SI: a bore of 400 m"):
+        kurbel.find(WATERWORKS, {"bore": (400, 500)}, "A_head = 150000 m2")
+    piston = kurbel.Piston(bore=450.0)
+    machine = kurbel.Machine((kurbel.Cylinder(kurbel.SliderCrank(0.4, 2.0), pistons=(piston,)),))
+    with pytest.warns(UserWarning, match="numbers are in SI: .*a bore of 450 m is beyond"):
+        kurbel.solve(machine)
+
+
+def test_results_are_shown_in_a_line() -> None:
+    case = solved("waterworks")
+    assert repr(case["T_max"]) == "<T_max = 87697.8014 N at 67.3035°>"
+    solutions = kurbel.find(WATERWORKS, {"bore": ("400 mm", "500 mm")}, "T_max = 90 kN")
+    assert repr(solutions) == "<kurbel find of bore for T_max = 90 kN: 1 solution in .found>"
+    assert str(solutions) == "bore = 454.079 mm, T_max = 90 kN"
+    drawing = kurbel.draw(case, "effort")
+    assert repr(drawing) == "<kurbel drawing of effort: .save('NAME.svg'), .pictures>"
+    for shown in (*drawing.pictures, case, case.flywheel, case.bearings, case.cylinders[0].at([0])):
+        assert len(repr(shown)) < 120
+        assert " object at 0x" not in repr(shown)

@@ -628,6 +628,7 @@ def test_many_compressible_pumps_are_those_of_each() -> None:
     varied = {
         "pump.liquid.bulk_modulus": ["2.15 GPa", "1.4 GPa", "0.8 GPa", "0.5 GPa"],
         "indicator.head_end.constant.clearance": ["0.8", "0", "0.4", "1.2"],
+        "indicator.head_end.constant.compression": ["322 bar", "300 bar", "80 bar", "200 bar"],
     }
     asked = ["flow_mean", "volumetric_efficiency", "volume_fluctuation", "work", "T_max", "dE"]
     rows = api.sweep(api.loads(text), varied, asked)
@@ -681,3 +682,13 @@ def test_what_is_assumed_of_a_pump_is_listed() -> None:
         ),
         "NPSH available": "no lift of the suction pipe given",
     }
+    drawn = "{unit: bar, expansion: [[0, 3], [0.1, -0.2], [1, -0.2]], compression: [[1, -0.2], [0.9, 3], [0, 3]]}"
+    keys = f"speed: 60 rpm\nstroke: 200 mm\nrod_ratio: 5\nbore: 100 mm\nindicator: {{head_end: {drawn}}}\n"
+    for more, what in (
+        ("pump: {liquid: {bulk_modulus: 2 GPa}}", "compression of the liquid"),
+        ("pump: {slip: 2 %}", "pipes, vessels, suction lift"),
+    ):
+        delivery = api.solve(api.loads(f"{keys}{more}")).delivery
+        assert what in {item.what for item in delivery_left_out(delivery)}
+        assert delivery.pump is not None
+        assert "volumetric_efficiency" not in delivery.pump.answers

@@ -7,8 +7,11 @@ from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
 
 from kurbel.machine_file import loads
 from kurbel.notes.warnings import cylinder_warnings
+from kurbel.report.commands import report_of
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from kurbel.tables.frame import Frame
+from representative import CONFIGS, case_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 RLO1, RLO5 = ((EXAMPLES / f"{name}.yaml").read_text("utf-8") for name in ("RLO1", "RLO5"))
@@ -118,6 +121,52 @@ indicator:
     expansion: [[0, 26], [1, 0.9]]
     exhaust: [[1, 1.05], [0, 1.05]]
 """
+
+
+PUMP = """
+speed: 60 rpm
+stroke: 200 mm
+rod_ratio: 5
+bore: 150 mm
+masses: {piston: 20 kg}
+indicator: {head_end: {constant: {expansion: -0.4 bar, compression: 20 bar}}}
+"""
+"""A plunger that presses all the time but for the suction, which is less than its inertia."""
+
+
+@pytest.mark.parametrize("name", sorted(CONFIGS))
+def test_of_the_shipped_machines_compressors_alone_have_rod_loads(name: str) -> None:
+    is_compressor = name in ("compressor", "compressor-two-stage")
+    case = case_of(name)
+    assert all(forces.no_compressor != is_compressor for forces in case.cylinders)
+
+
+def test_a_pump_gets_no_rod_load_but_by_name() -> None:
+    """Its piston is driven, as that of a compressor, but what it moves is a liquid."""
+    for text in (PUMP, PUMP.replace("{head_end", "{role: pump, head_end"), f"{PUMP}pump: {{}}\n"):
+        case = Case(loads(text))
+        forces = case.cylinders[0]
+        assert forces.work < 0
+        assert not any("rod load" in warning for warning in cylinder_warnings(forces))
+        report = report_of(case, Frame("forces", (0.0,), None, "metric"))
+        ids = {key_value.id for part in report.all_parts for key_value in part.key_values}
+        assert "P_max" in ids
+        assert not ids & {"rod_compression_max", "reversal_angle", "gas_tension_max"}
+        assert "P_rod" not in {column.id for part in report.all_parts for column in part.columns}
+        assert not any("API 618" in note for note in report.notes)
+        # after the outer dead centre 20 bar on the area, and m R ω² (1 − λ) at 1 Hz
+        largest = 20e5 * float(pi) / 4 * 0.15**2 + 20 * 0.1 * (2 * float(pi)) ** 2 * (1 - 1 / 5)
+        assert forces.rod_compression_max.value == pytest.approx(largest, rel=1e-12)
+
+
+def test_a_role_makes_a_compressor_of_a_trace() -> None:
+    """Samples that may be those of a motored engine: what nobody names is judged as a compressor, as before."""
+    points = [[degrees, 1 + 4 * (degrees % 360 > 180)] for degrees in range(0, 360, 10)]
+    trace = f"{{trace: {{unit: bar, points: {points}}}}}"
+    indicator = f"indicator: {{ROLE head_end: {trace}}}\n"
+    text = f"crank: 100 mm\nrod: 500 mm\nbore: 100 mm\n{indicator}"
+    for role, is_none in (("", False), ("role: compressor,", False), ("role: engine,", True)):
+        assert solved(text.replace("ROLE", role)).no_compressor == is_none
 
 
 def test_a_motored_engine_is_no_compressor() -> None:

@@ -1,21 +1,25 @@
 """`kurbel.sweep` and `kurbel.find`: many designs of a machine from Python."""
 
+import math
 import os
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from kurbel.designs.binding import Binder
+from kurbel.designs.binding import Binder, numbers_of
 from kurbel.designs.find import Solutions
 from kurbel.designs.find import find_solutions as find_in
 from kurbel.designs.plan import Input
 from kurbel.designs.sweep import Spec, Sweep, computed_rows
-from kurbel.errors import UsageError
+from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
+from kurbel.machine_file.from_python import errors_of_python
 from kurbel.machine_file.overrides import texts_at
-from kurbel.machine_file.reader import machine_of
+from kurbel.machine_file.reader import machine_of, read_machine
+from kurbel.notes.plausible import doubts_of
 
 
 def sweep(
@@ -39,12 +43,15 @@ def sweep(
 
     Raises UsageError for inputs of different lengths, keys without a value, and columns that the machine has not.
     """
-    origin = _read(machine)
-    start = tuple(texts_at(origin, tuple(inputs)))
     names = (columns,) if isinstance(columns, str) else tuple(columns)
-    axis = tuple(_inputs(Binder(origin, tuple(inputs), start), inputs))
-    swept = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
-    rows = list(computed_rows(swept, range(swept.rows)))
+    with errors_of_python(varied="inputs"):
+        origin = _read(machine)
+        start = tuple(texts_at(origin, tuple(inputs)))
+        axis = tuple(_inputs(Binder(origin, tuple(inputs), start), inputs))
+        swept = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
+        rows = list(computed_rows(swept, range(swept.rows)))
+    for input, kind in zip(axis, swept.kinds):
+        _warn_of_numbers(origin, input.key, input.numbers, kind, input.unit)
     arrays: dict[str, Any] = {}
     for head, values in zip(swept.heads, zip(*(row.values for row in rows))):
         if head.input:
@@ -82,14 +89,54 @@ def find(
     >>> found.found[0].values  # revolutions per second
     (1.5,)
     """
-    origin = _read(machine)
-    texts = []
-    for key, (low, high) in vary.items():
-        unit = ""
-        if not (isinstance(low, str) and isinstance(high, str)):
-            (unit,) = Binder(origin, [key], texts_at(origin, [key])).units
-        texts.append(f"{key}={low}:{high} {unit}".rstrip())
-    return find_in(origin, texts, _as_list(wanted), least, greatest, _as_list(where))
+    with errors_of_python():
+        origin = _read(machine)
+        texts = []
+        for key, (low, high) in vary.items():
+            unit = ""
+            if not (isinstance(low, str) and isinstance(high, str)):
+                binder = Binder(origin, [key], texts_at(origin, [key]))
+                (unit,) = binder.units
+                numbers = [float(end) for end in (low, high) if not isinstance(end, str)]
+                _warn_of_numbers(origin, key, numbers, binder.kinds[0], unit)
+            texts.append(f"{key}={low}:{high} {unit}".rstrip())
+        return find_in(origin, texts, _as_list(wanted), least, greatest, _as_list(where))
+
+
+_SAME_UNIT = 5.0
+"""Times a number of the file, up to which another one is probably in the same unit."""
+
+
+def _warn_of_numbers(
+    origin: Origin, key: str, numbers: Sequence[float], kind: str, unit: str
+) -> None:
+    """Warn of numbers that are far from that of the file and make a machine that nobody builds: mm for m, say."""
+    finite = [number for number in numbers if math.isfinite(number)]
+    if not finite:
+        return
+    (text,) = texts_at(origin, [key])
+    (in_file,) = numbers_of(Input(key, (text,)), kind)
+    for number in dict.fromkeys((min(finite), max(finite))):
+        is_near = abs(in_file) <= _SAME_UNIT * abs(number) <= _SAME_UNIT**2 * abs(in_file)
+        if is_near:
+            continue
+        doubts = _new_doubts(origin, f"{key}={number!r} {unit}".rstrip())
+        if doubts:
+            written = f"{number:g} {unit}".rstrip()
+            _, _, sentence = doubts[0].rpartition(": ")  # without the part that has the key
+            message = f"{key} = {written}, as numbers are in SI: {sentence}"
+            warnings.warn(message, stacklevel=3)
+            return
+
+
+def _new_doubts(origin: Origin, varied: str) -> list[str]:
+    """Return what no machine built has of a file with another value of a key, unless the file itself has it."""
+    try:
+        doubts = list(doubts_of(read_machine(origin._replace(varied=(varied,)))))
+    except KurbelError:  # its row has the reason
+        return []
+    doubts_of_file = set(doubts_of(read_machine(origin)))
+    return [doubt for doubt in doubts if doubt not in doubts_of_file]
 
 
 def _as_list(texts: Sequence[str] | str) -> list[str]:

@@ -188,6 +188,26 @@ class Solutions:
         self.jumps: list[Solution] = []
         self.excluded = 0
 
+    def __repr__(self) -> str:
+        count = len(self.found)
+        solutions = "1 solution" if count == 1 else f"{count} solutions"
+        keys = ", ".join(varied.key for varied in self.varied)
+        wanted = ", ".join(target.text for target in self.wanted)
+        return f"<kurbel find of {keys} for {wanted}: {solutions} in .found>"
+
+    def __str__(self) -> str:
+        """Return a line for each solution: the keys in the units of their ranges, and the key values."""
+        lines = []
+        for solution in self.found:
+            texts = []
+            for varied, value in zip(self.varied, solution.values):
+                texts.append(f"{varied.key} = {varied.written(value)}")
+            for head, value in zip(self.heads, solution.key_values):
+                texts.append(f"{head.id} = {show(value, head.kind)}")
+            line = ", ".join(texts)
+            lines.append("; ".join([line, *solution.notes]))
+        return "\n".join(lines) or repr(self)
+
     def at(self, shares: Array) -> list[_Design]:
         """Return the designs at shares (n, keys) of the ranges."""
         if self.progress:

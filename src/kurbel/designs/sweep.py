@@ -73,7 +73,9 @@ class Sweep:
         self._study = Study(
             spec.origin, self._keys, texts, spec.columns, spec.with_angles, cases=spec.cases
         )
-        self._numbers = list(map(numbers_of, self.plan.inputs, self._study.binder.kinds))
+        self.kinds = self._study.binder.kinds
+        """The kind of number of each key, '' for words."""
+        self._numbers = list(map(numbers_of, self.plan.inputs, self.kinds))
         self.texts = ("keeps", "broken", "failure") if self._study.limits else ("failure",)
         """Columns after the values: whether all limits are kept, `yes`, `no` or `` where one cannot be judged, the
         first that is not; why there are no values, or which limits cannot be judged."""

@@ -29,6 +29,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.declared.units import DiagramPoint, UnitFactor, written_unit
 from kurbel.errors import Fault, refuse
 from kurbel.machine.chamber import StrokeCard
+from kurbel.numerics.arithmetic import some
 
 if TYPE_CHECKING:
     from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam
@@ -252,10 +253,9 @@ class Card(StrokeCard, Record):
     def flat(self) -> bool:
         """Whether each line is one pressure, as those of an ideal pump."""
         for line in self.lines:
-            for p in line.pressures:
-                is_same = np.ndim(p) == 0 and p == line.pressures[0]
-                if not is_same:
-                    return False
+            first = line.pressures[0]
+            if not all(np.array_equal(pressure, first) for pressure in line.pressures):
+                return False
         return True
 
     @property
@@ -436,6 +436,25 @@ _ONE_PRESSURE = NumberForm(
 )
 Chamber = Union[Rectangle, Card, "IdealCard", "Wiebe", "Trace"]
 """The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
+
+
+def levels_of_strokes(chamber: Chamber | None) -> list[Number] | None:
+    """Return the pressures in Pa that a chamber has, each on a whole stroke; of the ambient none; else None."""
+    if isinstance(chamber, Rectangle):
+        if some(chamber.mean != 0):
+            return None
+        if chamber.level is None:
+            return []
+        return [chamber.level]
+    if not isinstance(chamber, Card):
+        return None
+    levels = list[Number]()
+    for line in chamber.lines:
+        first = line.pressures[0]
+        if not all(np.array_equal(pressure, first) for pressure in line.pressures):
+            return None
+        levels.append(first)
+    return levels
 
 
 def _mirrored(values: ValuesByKey) -> dict[str, object]:

@@ -61,7 +61,7 @@ def _force_on_knuckle(state: Any) -> Any:
 
 
 LINK_OFFERS: tuple[Offer, ...] = (
-    *(offer for offer in ROD_OFFERS if not offer.quantity.id.endswith("_book")),
+    *(offer for offer in ROD_OFFERS if not offer.quantity.id.endswith(("_book", "_error"))),
     force_column(
         "F_knuckle",
         "F_An",

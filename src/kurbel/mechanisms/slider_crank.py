@@ -23,6 +23,7 @@ from kurbel.mechanisms import (
     requested_column,
 )
 from kurbel.numerics.arithmetic import bearing, every, magnitude, some, sqrt, total, ulp, where
+from kurbel.quantity import Quantity
 
 _INFINITE = {"infinite": math.inf}
 
@@ -64,6 +65,38 @@ def _book(
     )
 
 
+def _error(
+    id: str,
+    kind: str,
+    formula: Callable[[CrankAngle, Number, Number], Number],
+    omega: int = 0,
+) -> Offer:
+    """Return the error of the first-order approximation of a column; formula: for R = 1, takes the angle, cos ψ and λ.
+
+    An infinite rod has none.
+    """
+
+    def factor(mechanism: Any, angle: CrankAngle) -> Number | None:
+        if not mechanism.straight or every(mechanism.lam == 0):
+            return None
+        _, cos_psi = mechanism.rod_angle(angle)
+        return mechanism.crank * formula(angle, cos_psi, mechanism.lam)
+
+    quantity = Quantity(
+        f"{id}_error",
+        f"Δ{id}",
+        kind,
+        f"Error of the first order in λ: {id}_0 less {id}",
+        commands=("motion",),
+        extremes=("motion",),
+        called=f"error of {id}_0",
+        after=f"{id}_book",
+        on_request=("motion",),
+        of_book=True,
+    )
+    return Offer(quantity, factor, omega)
+
+
 def _rod_turn(order: int) -> Offer:
     end, mark, kind, name = TURNING[order]
     text = f"{name} of the rod"
@@ -98,6 +131,23 @@ ROD_OFFERS: tuple[Offer, ...] = (
         "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)",
         formulas.first_order_acceleration,
         2,
+    ),
+    _error(
+        "x",
+        "length",
+        lambda angle, cos_psi, lam: formulas.displacement_error(angle.sin, cos_psi, lam),
+    ),
+    _error(
+        "c",
+        "velocity",
+        lambda angle, cos_psi, lam: formulas.velocity_error(angle.sin, angle.cos, cos_psi, lam),
+        omega=1,
+    ),
+    _error(
+        "b",
+        "acceleration",
+        lambda angle, cos_psi, lam: formulas.acceleration_error(angle.sin, angle.cos, cos_psi, lam),
+        omega=2,
     ),
     _rod_turn(1),
     _rod_turn(2),

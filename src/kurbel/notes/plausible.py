@@ -56,6 +56,11 @@ def _bores(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
         yield PlausibleFigure(piston.bore, piston.name)
 
 
+def _strokes(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
+    if cylinder.pistons:
+        yield PlausibleFigure(cylinder.mechanism.stroke)
+
+
 def _moving_mass(machine: Machine, cylinder: Cylinder) -> Iterator[PlausibleFigure]:
     masses = cylinder.masses
     if masses:
@@ -124,6 +129,8 @@ _NO_MOLECULE = "is that of no gas"
 OF_CYLINDERS = (
     # the widest cylinder built, of the Cruquius engine of 1849, has 3.66 m
     Bounds("a bore", "length", _bores, 0.0, 5.0, "is beyond anything built"),
+    # the longest, of pumping engines and pumping units, have some 3.7 and 9 m
+    Bounds("a stroke", "length", _strokes, 0.0, 20.0, "is beyond anything built"),
     # reciprocating masses of the largest marine diesels weigh some 2e4 kg
     Bounds("a mass", "mass", _moving_mass, 0.0, 1e5, "in moving parts is beyond anything built"),
     Bounds(
@@ -194,6 +201,13 @@ OF_MACHINES = (
     ),
 )
 """Figures of the whole machine."""
+
+
+def doubts_of(machine: Machine) -> Iterator[str]:
+    """Yield warnings on all figures of a machine that none built has."""
+    yield from machine_doubts(machine)
+    for cylinder in machine.cylinders:
+        yield from cylinder_doubts(machine, cylinder)
 
 
 def cylinder_doubts(machine: Machine, cylinder: Cylinder) -> Iterator[str]:

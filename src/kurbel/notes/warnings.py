@@ -23,6 +23,7 @@ from kurbel.notes.plausible import cylinder_doubts, machine_doubts
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.piston_works import Brake
+from kurbel.solver.rod_load import LEAST_REVERSAL
 from kurbel.tables.tables import grouped, joined_names
 
 
@@ -302,8 +303,6 @@ _CLOSED = 1e-9
 _COARSE = 0.01
 """An energy residual beyond this is more than an indicator may miss by its spacing."""
 _LARGEST_PEAK = 300e5  # Pa; of combustion engines
-_LEAST_REVERSAL = 15.0, 0.03
-"""Degrees of crank angle, and share of the larger load, that API 618 requires of the reversed rod load."""
 
 
 def valve_warnings(forces: CylinderForces) -> Iterator[str]:
@@ -372,7 +371,7 @@ def _reversal_warnings(forces: CylinderForces) -> Iterator[str]:
         return
     if angle is None or ratio is None:
         return
-    least_angle, least_ratio = _LEAST_REVERSAL
+    least_angle, least_ratio = LEAST_REVERSAL
     if angle < least_angle or ratio < least_ratio:
         yield (
             f"the rod load reverses over {angle:.3g} deg, to {100 * ratio:.3g} % "

@@ -40,7 +40,8 @@ def heat_release(source: Source) -> Iterator[Panel]:
     if heat is None:
         return
     released = heat.released
-    angles = np.linspace(float(released.angles[0]), float(released.angles[-1]), _POINTS)
+    begin, end = released.span
+    angles = np.linspace(begin, end, _POINTS)
     rates = released.rate_at(angles)
     burnt = released.burnt_at(angles)
     across = after_dead_centre(heat.setting)

@@ -269,6 +269,11 @@ class Picture(NamedTuple):
     across: int = 1
     legend: tuple[tuple[Words, int], ...] = ()
 
+    def __repr__(self) -> str:
+        count = len(self.panels)
+        panels = "1 panel" if count == 1 else f"{count} panels"
+        return f"<kurbel picture {self.id}: {self.heading}, {panels}>"
+
     @property
     def heading(self) -> str:
         """The line above the picture."""

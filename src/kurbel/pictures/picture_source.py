@@ -227,11 +227,15 @@ class Source:
             raise too_large(self.quantities[id])
         return samples
 
+    def key_value(self, id: str) -> Any:
+        """Return a key value of the results in SI, as it is computed."""
+        return self.results.rows.key_values[id].of(self.results)
+
     def extreme(self, id: str) -> Extreme | None:
         """Return the key value of this id, if there is one and it is an extreme."""
         if id not in self.key_values:
             return None
-        value = self.results.rows.key_values[id].of(self.results)
+        value = self.key_value(id)
         return value if isinstance(value, Extreme) else None
 
     def marks(self, id: str, place: Callable[[float], float | complex] = float) -> tuple[Mark, ...]:

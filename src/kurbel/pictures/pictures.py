@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
+from kurbel.declared.forms.figures import scoped
 from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.near_words import did_you_mean
+from kurbel.numerics.extreme import number_of
 from kurbel.pictures.constructions import construction, polar_force
 from kurbel.pictures.heat import heat_release
 from kurbel.pictures.machine_pictures import (
@@ -50,6 +52,7 @@ from kurbel.pictures.valve import reuleaux, valve_ellipse, zeuner
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas, Pressure
+from kurbel.solver.rod_load import LEAST_REVERSAL, RodLoads
 from kurbel.solver.state import State
 from kurbel.tables.frame import equal_parts
 from kurbel.tables.tables import cylinder_meant, grouped, joined_names
@@ -250,6 +253,68 @@ def forces(source: Source) -> Iterator[Panel]:
         yield source.panel(of_kind, zero=True)
 
 
+_LIMITED = {"rod_compression_max": 1.0, "rod_tension_max": -1.0}
+"""Limits that are drawn with the rod load at the crosshead pin, each with the sign of the load."""
+
+
+def rod_load(source: Source) -> Iterator[Panel]:
+    """Rod load of a compressor after API 618 over the crank angle: P_G at the crosshead pin is made from gas and
+    inertia, P_KS at the piston rod lacks the crosshead; compression is positive. J: P_G reverses. Thin lines: limits of
+    the machine."""
+    results = source.results
+    loads = None if results.no_compressor else results.rod_loads
+    if loads is None or not source.having("P_rod"):
+        return
+    reversals = loads.phi_rod_reversal or ()
+    at_pin = {"P_rod": "at the crosshead pin"}
+    panel = source.panel(["P_rod"], shaded=True, zero=True, also=reversals, words=at_pin)
+
+    # what it is made from, and the load of the piston rod
+    names = {"P_piston_rod": "at the piston rod", "P_gas": "gas"}
+    parts = [source.line(id, names[id]) for id in source.having(*names)]
+    masses = results.drive.cylinder.masses
+    if masses and results.drive.has_inertia:
+        inertia = Words("−m b", "-m b", "inertia without the connecting rod")
+        parts.append((inertia, lambda state: -masses.parts * state.b))
+    with_parts = source.panel(parts, like="P_rod", also=reversals)
+    load, zero = panel.curves
+    limits = _limits_of_rod_load(source, load.x)
+
+    # the largest loads, and where the load changes its direction
+    marks = []
+    for id, sign in _LIMITED.items():
+        extreme = source.extreme(id)
+        if extreme and extreme.value:
+            mark = source.mark(id, extreme, extreme.degrees)
+            marks.append(mark._replace(y=sign * mark.y))
+    for angle in reversals:
+        marks.append(Mark(angle, 0.0, PageFigure(Words("J"), at_deg=angle)))
+    curves = (load, *with_parts.curves, zero, *limits)
+    yield panel._replace(curves=curves, marks=tuple(marks), title=_reversal_text(loads))
+
+
+def _limits_of_rod_load(source: Source, angles: Array) -> Iterator[Curve]:
+    """Yield level lines at the limits of the rod load that the machine, or this cylinder, has."""
+    drive = source.results.drive
+    for name, bound in drive.machine.limits:
+        scope, id = scoped(name)
+        if id in _LIMITED and scope in ("", drive.name):
+            symbol = source.key_values[id].symbol
+            yield level(angles, _LIMITED[id] * float(bound), Words(f"limit of {symbol}"))
+
+
+def _reversal_text(loads: RodLoads) -> str:
+    """Return how long and how far the rod load reverses, and what API 618 requires."""
+    angle, ratio = loads.reversal_longest, loads.reversal_ratio
+    if not angle or ratio is None:
+        return "never reverses"
+    least_angle, least_ratio = LEAST_REVERSAL
+    return (
+        f"reverses over {angle:.4g}° to {100 * ratio:.3g} % "
+        f"(API 618: {least_angle:g}°, {100 * least_ratio:g} %)"
+    )
+
+
 def polar_effort(source: Source) -> Iterator[Panel]:
     """Tangential force T drawn outward from the circle of the crank pin."""
     if not source.having("T"):
@@ -272,6 +337,18 @@ def motion(source: Source) -> Iterator[Panel]:
     1050)."""
     for id in source.having("x", "c", "b", "theta", "theta_dot", "theta_ddot"):
         yield _with_infinite_rod(source, id, PHI)
+
+
+def approximations(source: Source) -> Iterator[Panel]:
+    """Error of the first-order formulas of the books (R 286, 289, 291) over the crank angle: approximation less exact
+    value, with the largest errors marked; it grows with the cube of λ."""
+    wholes = {"x_error": "stroke", "c_error": "c_max", "b_error": "b_max"}
+    for id in source.having(*wholes):
+        panel = source.panel([id], zero=True)
+        largest = max((abs(mark.y) for mark in panel.marks), default=0.0)
+        whole = source.key_values[wholes[id]]
+        share = largest / abs(number_of(source.key_value(whole.id)))
+        yield panel._replace(title=f"at most {100 * share:.2g} % of {whole.symbol}")
 
 
 def motion_over_stroke(source: Source) -> Iterator[Panel]:
@@ -357,6 +434,7 @@ PICTURES = (
     PictureKind("trace-lines", "Compression and expansion", "forces", measured_lines),
     PictureKind("heat-release", "Heat release", "forces", heat_release),
     PictureKind("forces", "Forces in the crank train", "forces", forces),
+    PictureKind("rod-load", "Rod load", "forces", rod_load),
     PictureKind("effort-polar", "Tangential force in polar form", "forces", polar_effort),
     PictureKind("force-polar", "Piston force in polar form", "forces", polar_force),
     PictureKind("effort", "Turning effort", "flywheel", effort),
@@ -388,6 +466,7 @@ PICTURES = (
     PictureKind(
         "motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke
     ),
+    PictureKind("approximations", "Error of the approximations", "motion", approximations),
     PictureKind("mechanism", "Mechanism", "", mechanism),
     PictureKind(
         "construction", "Constructions of displacement and velocity", "motion", construction

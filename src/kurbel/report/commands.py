@@ -258,10 +258,11 @@ _ROWS = (
         _delivery,
         _STALLS,
         section=(2, "Delivery"),
-        first="flow flow_mean volume_fluctuation vessel_volume suction_lift_max volumetric_efficiency capacity "
+        first="flow flow_mean volume_fluctuation vessel_volume suction_lift_max npsh_available volumetric_efficiency "
+        "capacity "
         "discharge_temperature stage_power isentropic_efficiency",
         in_cases="volumetric_efficiency capacity mass_flow discharge_temperature stage_power isentropic_efficiency "
-        "flow_mean flow_max volume_fluctuation vessel_volume vessel_swing suction_lift_max",
+        "flow_mean flow_max volume_fluctuation vessel_volume vessel_swing suction_lift_max npsh_available",
     ),
     Command("plot", "Pictures, in the terminal or as SVG, PNG, PDF.", statuses=_STALLS),
     Command("report", "Everything on one page of HTML; two machines side by side."),

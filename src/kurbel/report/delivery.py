@@ -144,8 +144,12 @@ def _assumed(machine: Machine, pump: Pump) -> Iterator[LeftOut]:
         yield LeftOut("NPSH available", "no lift of the suction pipe given")
     if liquid.bulk_modulus is None:
         return
-    clearances = [getattr(chamber, "clearance", None) for chamber in machine.chambers]
-    if None in clearances:
+    soft = [card for card in machine.chambers if liquid.opening_fractions(card) is not None]
+    if not soft:
+        reason = "no chamber has one pressure on each stroke, as `constant` gives"
+        yield LeftOut("compression of the liquid", reason)
+        return
+    if any(getattr(card, "clearance", None) is None for card in soft):
         reason = "no clearance given with every `constant`, it is taken as 0"
         yield LeftOut("clearance of the chambers", reason)
     reason = "heads in pipes are those of valves that open in the dead centres"

@@ -256,7 +256,8 @@ def _smooth(state: State) -> list[Number | None]:
         columns += [state.P_gas, state.P, state.N, state.T]
         columns += state.rubbing or ()
     for offer in state.mechanism.OFFERS:
-        if offer.quantity.extremes:
+        # no force depends on an approximation of the books
+        if offer.quantity.extremes and not offer.quantity.of_book:
             columns.append(offer.of(state))
     return columns
 

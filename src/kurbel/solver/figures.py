@@ -62,6 +62,17 @@ class Figure(NamedTuple):
         where = "" if self.degrees is None else f" at {self.degrees:.2f}°"
         return f"{numbers} {self.quantity.marked(unit)}".rstrip() + where
 
+    def __repr__(self) -> str:
+        """Return it with its id, in SI.
+
+        >>> Figure(10000.0, "N", 90.0, Quantity("T_max", "T_max", "force", "Largest tangential force"))
+        <T_max = 10000 N at 90°>
+        """
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        numbers = ", ".join(f"{value:.9g}" for value in values)
+        where = "" if self.degrees is None else f" at {self.degrees:.6g}°"
+        return f"<{self.quantity.id} = {numbers} {self.unit}".rstrip() + f"{where}>"
+
 
 class NotebookView:
     """How a notebook shows results; `kurbel.notebook` sets it, since the solver may not import tables and pictures."""
@@ -89,6 +100,10 @@ class AtAngles:
             if isinstance(item, ForEach):
                 for row in item.rows:
                     setattr(cls, row.quantity.id, property(row.of, doc=row.quantity.text))
+
+    def __repr__(self) -> str:
+        ids = ", ".join(f".{id}" for id in list(self.rows)[:4])
+        return f"<kurbel columns at crank angles: {ids}, … in SI>"
 
     @property
     def rows(self) -> Mapping[str, QuantityRow]:

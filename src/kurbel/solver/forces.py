@@ -495,10 +495,18 @@ class CylinderForces(SampledCylinder, Results):
 
     @property
     def no_compressor(self) -> bool:
-        """Whether rod loads are not shown: for engines, also motored four-stroke ones, and without a connecting rod."""
+        """Whether rod loads are not shown: those of API 618 are of compressors, and at a connecting rod.
+
+        An engine may be motored, and a pump and a ram are driven, too.
+        """
         if self.work is None or self.work >= 0:
             return True
-        return self.drive.revolutions > 1 or not self.mechanism.has_rod
+        drive = self.drive
+        if drive.revolutions > 1 or not self.mechanism.has_rod:
+            return True
+        if drive.machine.pump is not None or drive.cylinder.ram_force is not None:
+            return True
+        return not any(gas.work < 0 and gas.compresses_gas for gas in drive.gas)
 
     @property
     def open_at_crank_end(self) -> bool:

@@ -25,7 +25,7 @@ from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import CYCLES, within_cycle
 from kurbel.errors import UsageError
 from kurbel.machine.batch import changed, taken, varies
-from kurbel.machine.indicator import STROKES, Card, Chamber, Rectangle
+from kurbel.machine.indicator import STROKES, Card, Chamber, Rectangle, levels_of_strokes
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.setting import Setting
@@ -431,6 +431,7 @@ class PistonGas:
         self.piston, self.stroke, self.repeats = piston, mechanism.stroke, repeats
         self.number = number
         self.absolute, self.base = indicator.absolute, at_head.base
+        self.role = indicator.role
         head_area: Number = piston.head_area * abs(ratio)
         crank_area: Number = piston.crank_area * abs(ratio)
         self.areas = head_area, crank_area
@@ -459,6 +460,21 @@ class PistonGas:
             clearance = getattr(chamber, "clearance", None)
             volume = 0.0 if clearance is None else clearance * area * self.stroke
             self.clearance_volumes.append(volume)
+
+    @property
+    def compresses_gas(self) -> bool:
+        """Whether the piston, if it is driven, compresses a gas: by its card, its role, or the shape of its pressures.
+
+        A liquid has one pressure on each stroke; a combustion engine and a steam engine may be driven, too.
+        """
+        chambers = list(self.piston.chambers.values())
+        if any(chamber.compresses for chamber in chambers):
+            return True
+        if self.role is not None:
+            return self.role == "compressor"
+        if any(chamber.burns or chamber.by_steam for chamber in chambers):
+            return False
+        return any(levels_of_strokes(chamber) is None for chamber in chambers)
 
     @cached_property
     def works(self) -> tuple[Number, ...]:

@@ -361,10 +361,13 @@ class Motion(Results):
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes over a turn of a column that the mechanism offers; None for what does not vary."""
         ids = [offer.quantity.id for offer in self._offers]
-        if column not in ids or self.omega is None:
+        if column not in ids:
             return None
         number = ids.index(column)
-        extremes = self._times_omega(self._searched[2 + number], self._offers[number].omega)
+        order = self._offers[number].omega
+        if order and self.omega is None:
+            return None
+        extremes = self._times_omega(self._searched[2 + number], order)
         highest, lowest = extremes.largest.value, extremes.smallest.value
         is_constant = every(highest - lowest <= 1e-14 * abs(highest))
         return None if is_constant else extremes

@@ -19,6 +19,8 @@ from kurbel.solver.cycle import reversals
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, result
 
+LEAST_REVERSAL = 15.0, 0.03
+"""Degrees of crank angle, and share of the larger load, that API 618 requires of the reversed rod load."""
 _LOADS = {
     "rod_compression": ("P_G,d", "rod load at the crosshead pin in compression"),
     "rod_tension": ("P_G,z", "rod load at the crosshead pin in tension"),

@@ -30,6 +30,8 @@ from kurbel.solver.figures import result
 
 CHORD = 1.0
 """Degrees over which rates are measured, as those of traces."""
+_MARGIN = 10.0
+"""Degrees before and after the heat release that a picture of it shows, too."""
 _CENTRE = 360.0
 """Where the chamber's dead centre is in the pieces, which hold one compression before and one expansion after it."""
 
@@ -334,6 +336,14 @@ class WiebeHeat:
         self._last: Number = result(last, count)
         self.supplied: Number = card.heat
         self.total: Number = card.heat_to_gas * self._last
+
+    @property
+    def span(self) -> tuple[Any, Any]:
+        """The degrees from the firing dead centre between which heat is released, with a margin at either end."""
+        last = self.expansion
+        if not self.card.runs_on:
+            last = np.minimum(self.card.start + self.card.duration + _MARGIN, last)
+        return np.maximum(self.card.start - _MARGIN, self.expansion - 360.0), last
 
     def burnt_at(self, after: Array, machine: Indices | None = None) -> Array:
         """Return the burnt share x_b of what is released, at so many degrees after the firing dead centre."""

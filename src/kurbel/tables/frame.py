@@ -444,7 +444,9 @@ def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
 
 def _is_added(quantity: Quantity, frame: Frame) -> bool:
     """Return whether a column is shown in any case: that of the even steps, and approximations to compare with."""
-    return quantity.id == frame.over or (frame.compare and quantity.id.endswith("_book"))
+    return quantity.id == frame.over or (
+        frame.compare and quantity.id.endswith(("_book", "_error"))
+    )
 
 
 def _usual_columns(frame: Frame, subject: Subject, added: Sequence[Quantity]) -> list[Quantity]:

@@ -85,6 +85,11 @@ class Released(NamedTuple):
         return None
 
     @property
+    def span(self) -> tuple[float, float]:
+        """The degrees from the firing dead centre between which heat is counted."""
+        return float(self.angles[0]), float(self.angles[-1])
+
+    @property
     def burnt(self) -> Array:
         """The burnt share x_b (n,) at its angles: 0 before combustion, 1 after it."""
         burnt = (self.heat - self.heat[self.first]) / self.total

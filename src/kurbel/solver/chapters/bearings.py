@@ -256,6 +256,9 @@ class ShaftBearings:
     that is not known.
     """
 
+    def __repr__(self) -> str:
+        return f"<kurbel bearings of '{self.machine.name}': .parts>"
+
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
         self.machine, self._cylinders = machine, cylinders
         if not any(map(_loads_pins, cylinders)):

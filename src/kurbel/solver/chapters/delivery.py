@@ -120,7 +120,8 @@ class Delivery(Results):
     """What one pumping piston, or all of a machine, deliver; key values in SI, of many machines (machines,).
 
     pieces: of the cycle in degrees; rate: takes the words of `displaced` and returns dV/dφ in m³ per radian at their
-    nodes; is_double_acting: whether both ends of one piston deliver; pump: its pipes, None for one piston of several.
+    nodes; is_double_acting: whether both ends of one piston deliver; is_compressible: whether the liquid is, so that valves
+    open late; pump: its pipes, None for one piston of several.
     Raises UsageError for a vessel that would empty.
     """
 
@@ -176,6 +177,7 @@ class Delivery(Results):
         count: int | None,
         rate: Callable[..., Array],
         is_double_acting: bool,
+        is_compressible: bool,
         pump: Pump | None = None,
     ) -> None:
         self.name = name
@@ -184,6 +186,7 @@ class Delivery(Results):
         self.pump = pump
         self._rate = cache(rate)
         self._is_double_acting = is_double_acting
+        self.is_compressible = is_compressible
         # the pipes, and whether each is that of suction
         self._pipes = list[tuple[Pipe, bool]]()
         if pump and pump.suction_pipe:
@@ -321,12 +324,6 @@ class Delivery(Results):
             if self.pump.suction_pipe.lift is not None:
                 answers["npsh_available"] = lift - self.pump.suction_pipe.lift
         return answers
-
-    @property
-    def is_compressible(self) -> bool:
-        """Whether the liquid has a bulk modulus, so that valves open late."""
-        pump = self.machine.pump
-        return pump is not None and pump.liquid.bulk_modulus is not None
 
     def _suction_lift(self, pump: Pump) -> Number:
         """Return the head in m that is left of the barometer for the lift, where the pipe takes most of it."""
@@ -477,6 +474,7 @@ class MachineDelivery:
             self._count,
             rate,
             is_double_acting,
+            any(piston.opens_late for _, piston in self._pumps),
             self.machine.pump,
         )
 
@@ -512,7 +510,15 @@ class MachineDelivery:
         ]
         rate = self._rate_of(forces.pieces, [(forces.samples, piston)], own_ends)
         is_double_acting = piston.head_delivers and piston.crank_delivers
-        delivery = Delivery("", self.machine, forces.pieces, self._count, rate, is_double_acting)
+        delivery = Delivery(
+            "",
+            self.machine,
+            forces.pieces,
+            self._count,
+            rate,
+            is_double_acting,
+            piston.opens_late,
+        )
         _ = delivery.answers, delivery.extremes_of("flow")
         return delivery
 

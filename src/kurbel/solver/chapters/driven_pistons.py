@@ -11,7 +11,7 @@ from kurbel.arrays import Array, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine.ideal_cards import Compressor
-from kurbel.machine.indicator import Card, Chamber, Rectangle
+from kurbel.machine.indicator import Chamber, levels_of_strokes
 from kurbel.numerics.arithmetic import every, some, spread
 from kurbel.solver.drive import Drive
 from kurbel.solver.gas import PistonGas
@@ -91,26 +91,7 @@ def _alike(condition: Truth) -> bool:
 
 def _is_level(chamber: Chamber | None) -> bool:
     """Return whether a chamber has one pressure on each stroke, as a pump's has."""
-    return _levels(chamber) is not None
-
-
-def _levels(chamber: Chamber | None) -> list[Number] | None:
-    """Return the pressures in Pa that a chamber has, each on a whole stroke; of the ambient none; else None."""
-    if isinstance(chamber, Rectangle):
-        if some(chamber.mean != 0):
-            return None
-        if chamber.level is None:
-            return []
-        return [chamber.level]
-    if not isinstance(chamber, Card):
-        return None
-    levels = list[Number]()
-    for line in chamber.lines:
-        first = line.pressures[0]
-        if not all(np.array_equal(pressure, first) for pressure in line.pressures):
-            return None
-        levels.append(first)
-    return levels
+    return levels_of_strokes(chamber) is not None
 
 
 # chambers that are always open to a pipe
@@ -154,7 +135,7 @@ def absolute_levels(drive: Drive, gas: PistonGas, end: str) -> list[Number]:
     """Return the absolute pressures in Pa of an end that has one on each stroke; none of another end."""
     lift = 0.0 if gas.absolute else drive.machine.ambient
     card = drive.cylinder.pistons[gas.number].chambers.get(end)
-    return [level + lift for level in _levels(card) or ()]
+    return [level + lift for level in levels_of_strokes(card) or ()]
 
 
 def _are_equal(pressure: Number, other: Number) -> bool:

@@ -280,7 +280,7 @@ class ShaftVibration(Results):
     def holzer(self, mode: int) -> Holzer:
         """Return Holzer's table of a mode by its number. Raises UsageError where there is none."""
         if not 1 <= mode <= self.last:
-            raise UsageError(f"--mode {mode}: the shaft line has the modes 1 to {self.last}")
+            raise UsageError(f"mode {mode}: the shaft line has the modes 1 to {self.last}")
         return self.modes.holzer(mode - self.first)
 
     # critical speeds
