@@ -461,8 +461,8 @@ def _with_stroke(mechanism: ReadMapping, piston: ReadMapping) -> ReadMapping:
     """Return a mechanism with the stroke that a piston of this bore and displacement has, if it has none."""
     keys = mechanism.form.keys
     has_stroke = "crank" in mechanism.values or "stroke" in mechanism.values
-    bore = piston.values.get("bore")
-    displacement = piston.values.get("displacement")
+    bore: Any = piston.values.get("bore")
+    displacement: Any = piston.values.get("displacement")
     if has_stroke or "stroke" not in keys or bore is None or displacement is None:
         return mechanism
     if bore is REFUSED or displacement is REFUSED:
@@ -471,14 +471,14 @@ def _with_stroke(mechanism: ReadMapping, piston: ReadMapping) -> ReadMapping:
     return mechanism.with_value("stroke", displacement / (math.pi / 4 * bore**2))
 
 
-def _with_bore(mapping: object, stroke: object) -> object:
+def _with_bore(mapping: object, stroke: Any) -> object:
     """Return a piston with the bore that its displacement and a stroke in m have, if it has none."""
     if not isinstance(mapping, ReadMapping) or not _has_displacement(mapping):
         return mapping
     if "bore" in mapping.values:
         return mapping
-    displacement = mapping.values["displacement"]
-    ratio = mapping.values.get("lever_ratio", 1.0)
+    displacement: Any = mapping.values["displacement"]
+    ratio: Any = mapping.values.get("lever_ratio", 1.0)
     if REFUSED in (stroke, displacement, ratio):
         return mapping.with_value("bore", REFUSED)
     # d = √(4 V/(π s))

@@ -209,7 +209,7 @@ class Card(StrokeCard, Record):
                 message = "the lines have a mean height of their own; leave out the ordinates"
             refuse(*(Fault((name,), message) for name in lines))
             # p_i = a/(l · spring)
-            height = measured.get("mean_height")
+            height: float = measured.get("mean_height", 0.0)
             doubts: tuple[str, ...] = ()
             if "area" in measured:
                 height = measured["area"] / drawn.length
