@@ -12,6 +12,7 @@ import time
 from kurbel import loads
 from kurbel.accuracy.extremes import Probe, all_cases
 from kurbel.accuracy.methods import Precise, mp, mpf
+from kurbel.accuracy.references import Textbook
 from kurbel.accuracy.shaft import EVERY, TextbookShaft, speed_of
 from kurbel.accuracy.textbook import DIGITS
 from kurbel.machine import Machine
@@ -41,7 +42,7 @@ def main() -> None:
     with mp.workdps(DIGITS):
         for text in texts[:most]:
             machine = loads(text)
-            omega = speed_of(TextbookShaft(machine), MOST_ELEMENTS).omega
+            omega = speed_of(TextbookShaft(Textbook(machine)), MOST_ELEMENTS).omega
             for case in cases:
                 angle = float(case.asked.removeprefix(ASKED))
                 if case.machine == text:

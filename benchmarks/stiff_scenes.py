@@ -9,6 +9,7 @@ from pathlib import Path
 
 from kurbel import accuracy, loads
 from kurbel.accuracy.methods import mp
+from kurbel.accuracy.references import Textbook
 from kurbel.accuracy.shaft import SpeedOfShaft, TextbookShaft, speed_of
 from kurbel.accuracy.textbook import DIGITS
 
@@ -42,7 +43,7 @@ def main() -> None:
             continue
         print(machine.name, flush=True)
         with mp.workdps(DIGITS):
-            reference = columns(speed_of(TextbookShaft(machine), MOST))
+            reference = columns(speed_of(TextbookShaft(Textbook(machine)), MOST))
         lines[number] = "\t".join([quick, text, *reference])
         TABLE.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
 

@@ -173,10 +173,11 @@ Stiff and extreme machines go through the whole program, from the text of a file
 Some bounds are wide, because the value depends on the input so much: a volumetric efficiency of 1e-7, a coupling at
 order 99 of the torque with nothing to damp it, a crosshead just before it locks.
 
-Traces, whose work is the sum over their samples; journals in the bearings of a crankshaft, since who bears what is found
-with all cylinders together; and an effort of which only the swing of energy is given, which has no torque: these have
-no second calculation in this command, and it says so. All else is compared with free bodies of every member: a rod as a rigid body,
-friction in pins, yokes and rings, other mechanisms by where their joints are, events of a slide valve by searching.
+Journals in the bearings of a crankshaft, since each bearing load follows from all cylinders together; an effort of which only
+the swing of energy is given, which has no torque; traces of more than 400 samples, and the work of one at equal angles, which
+is a sum over its samples: these have no second calculation in this command, and it says so. All else is compared with free
+bodies of every member: a rod as a rigid body, a link rod with the big end that carries it, friction in pins, yokes and rings,
+other mechanisms by where their joints are, events of a slide valve by searching, a trace as straight lines between its samples.
 
 `python tools/accuracy.py` writes this page, `benchmarks/stiff_scenes.py` the references of the stiff scenes,
 `benchmarks/model_and_data.py` has the errors of data and model.

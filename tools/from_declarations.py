@@ -219,6 +219,7 @@ def _command(name: str) -> str:
     options = _table(("option", "meaning"), ((f"`{option}`", meaning) for option, meaning in rows))
     assert isinstance(command, KurbelCommand)
     end = "\n\n".join(command.end_of_help())
+    usage += f"\n\nExample: {COMMANDS[name].example}"
     return f"## kurbel {name}\n\n```text\n{usage}\n```\n\n{text}\n\n{options}\n\n{end}"
 
 

@@ -47,6 +47,7 @@ def _command(word: str) -> list[str]:
     context = click.Context(command, info_name=f"kurbel {word}", help_option_names=names)
     usage = " ".join(command.get_usage(context).removeprefix("Usage: ").split())
     lines = [f".SS {_escaped(usage)}", *_prose(command.help or "")]
+    lines += [".PP", ".EX", _escaped(COMMANDS[word].example), ".EE"]
     for parameter in command.get_params(context):
         record = parameter.get_help_record(context)
         if isinstance(parameter, click.Option) and record:

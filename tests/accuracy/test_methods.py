@@ -8,7 +8,7 @@ import pytest
 
 from kurbel.accuracy import trials
 from kurbel.accuracy.methods import by_quad, by_simpson, over_the_turn
-from kurbel.accuracy.references import unknown
+from kurbel.accuracy.references import Textbook, unknown
 from kurbel.accuracy.trials import Trial, errors, examined, savings, with_corners, without_corners
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
@@ -31,7 +31,7 @@ def rows() -> list[Trial]:
         machine = loads(
             SMOOTH.replace("flywheel", f"friction: {{crosshead: 0.05, {RINGS}}}, flywheel")
         )
-        return examined(machine, np.arange(0.0, 361.0, 10.0), True)[0]
+        return examined(Textbook(machine), np.arange(0.0, 361.0, 10.0), True)[0]
 
 
 @pytest.mark.parametrize("quantity", ["x", "c", "b", "A_i", "T_max, T_min", "A_f", "ΔE"])

@@ -1,11 +1,13 @@
 """The command line as a process: pipes, terminals, encodings, full disks, start-up."""
 
 import os
+import shlex
 import subprocess
 import sys
 from io import StringIO
 from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner
 
@@ -91,6 +93,16 @@ def test_every_command_has_help_that_any_encoding_can_show(command: str) -> None
     assert result.exit_code == 0
     assert result.stdout.startswith(f"Usage: kurbel {command}")
     assert result.stdout.isascii()
+    # the first screen has an example, which can be read, and the options of most calls
+    screen = "\n".join(result.stdout.splitlines()[:24])
+    name, word, *words = shlex.split(COMMANDS[command].example.partition(" > ")[0])
+    assert (name, word) == ("kurbel", command)
+    assert f"Example: {COMMANDS[command].example}" in screen
+    click_command = kurbel.get_command(click.Context(kurbel), command)
+    assert click_command
+    with click_command.make_context(command, words):
+        for option in ("--units", "--format", "--output"):
+            assert (option in screen) == (option in result.stdout)
 
 
 def test_a_fault_in_kurbel_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -59,47 +59,17 @@ def cluster(tmp_path: Path) -> Iterator[Cluster]:
 SWEEP = [sys.executable, "-m", "kurbel", "sweep", WATERWORKS, "--columns", "T_max,b_max", "--vary"]
 
 
-def in_the_midst(cluster: Cluster, file: Path) -> subprocess.Popen[str]:
-    """Return a sweep of 15,001 rows on two workers that has written some."""
+@pytest.mark.slow
+def test_a_cluster_of_which_parts_are_missing_or_killed(cluster: Cluster, tmp_path: Path) -> None:
+    """One cluster for all, since its start costs more than the sweeps."""
+    without_workers_it_is_waited_for(cluster)
     cluster.add_workers(2)
-    words = [*SWEEP, "rod_ratio=3:6:0.0002", "--dask", cluster.address, "-o", str(file)]
-    process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
-    until_written(process, file.with_name("rows.csv.part"), 1000)
-    return process
+    a_killed_worker_loses_no_row(cluster, tmp_path / "rows.csv")
+    cluster.add_workers(2)
+    a_killed_scheduler_is_named_and_resume_goes_on(cluster, tmp_path / "rows.csv")
 
 
-@pytest.mark.slow
-def test_a_killed_worker_loses_no_row(cluster: Cluster, tmp_path: Path) -> None:
-    file = tmp_path / "rows.csv"
-    process = in_the_midst(cluster, file)
-    os.kill(cluster.processes[1].pid, signal.SIGKILL)
-    assert (process.communicate(timeout=300)[1], process.returncode) == ("", 0)
-    alone = subprocess.run(
-        [*SWEEP, "rod_ratio=3:6:0.0002", "-f", "csv"], capture_output=True, check=True
-    ).stdout
-    assert file.read_bytes() == alone
-    assert alone.count(b"\n") == 15_002
-
-
-@pytest.mark.slow
-def test_a_killed_scheduler_is_named_and_resume_goes_on(cluster: Cluster, tmp_path: Path) -> None:
-    """It was a fault in kurbel, after a traceback of Dask."""
-    file, part = tmp_path / "rows.csv", tmp_path / "rows.csv.part"
-    file.write_text("old")
-    process = in_the_midst(cluster, file)
-    os.kill(cluster.processes[0].pid, signal.SIGKILL)
-    stderr = process.communicate(timeout=300)[1]
-    rows = part.read_bytes().count(b"\n") - 1
-    assert stderr.startswith(
-        f"{part} holds {rows} rows; run again with --resume to continue\n"
-        f"Error: --dask {cluster.address}: the cluster failed: "
-    )
-    assert stderr.count("\n") == 2
-    assert (process.returncode, file.read_text()) == (2, "old")
-
-
-@pytest.mark.slow
-def test_a_cluster_without_workers_is_waited_for(cluster: Cluster) -> None:
+def without_workers_it_is_waited_for(cluster: Cluster) -> None:
     words = [*SWEEP, "rod_ratio=4,5", "-f", "csv", "--dask", cluster.address]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     limited(process, 300)
@@ -111,3 +81,38 @@ def test_a_cluster_without_workers_is_waited_for(cluster: Cluster) -> None:
     cluster.add_workers(1)
     stdout, stderr = process.communicate(timeout=300)
     assert (process.returncode, stderr, stdout.count("\n")) == (0, "", 3)
+
+
+def in_the_midst(cluster: Cluster, file: Path) -> subprocess.Popen[str]:
+    """Return a sweep of 15,001 rows that has written some."""
+    words = [*SWEEP, "rod_ratio=3:6:0.0002", "--dask", cluster.address, "-o", str(file)]
+    process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
+    until_written(process, file.with_name("rows.csv.part"), 1000)
+    return process
+
+
+def a_killed_worker_loses_no_row(cluster: Cluster, file: Path) -> None:
+    process = in_the_midst(cluster, file)
+    os.kill(cluster.processes[1].pid, signal.SIGKILL)
+    assert (process.communicate(timeout=300)[1], process.returncode) == ("", 0)
+    alone = subprocess.run(
+        [*SWEEP, "rod_ratio=3:6:0.0002", "-f", "csv"], capture_output=True, check=True
+    ).stdout
+    assert file.read_bytes() == alone
+    assert alone.count(b"\n") == 15_002
+
+
+def a_killed_scheduler_is_named_and_resume_goes_on(cluster: Cluster, file: Path) -> None:
+    """It was a fault in kurbel, after a traceback of Dask."""
+    part = file.with_name("rows.csv.part")
+    file.write_text("old")
+    process = in_the_midst(cluster, file)
+    os.kill(cluster.processes[0].pid, signal.SIGKILL)
+    stderr = process.communicate(timeout=300)[1]
+    rows = part.read_bytes().count(b"\n") - 1
+    assert stderr.startswith(
+        f"{part} holds {rows} rows; run again with --resume to continue\n"
+        f"Error: --dask {cluster.address}: the cluster failed: "
+    )
+    assert stderr.count("\n") == 2
+    assert (process.returncode, file.read_text()) == (2, "old")

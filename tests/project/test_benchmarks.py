@@ -12,22 +12,22 @@ BRIEF = {
     "oil_film.py": ["1"],
     "pareto_front.py": ["2000"],
     "random_cylinders.py": ["5"],
-    "random_files.py": ["5"],
     "random_machines.py": ["5"],
     "reading.py": ["500"],
-    "speed_lines.py": ["1"],
-    "start_up.py": ["1", "table"],
-    "torsion.py": ["1"],
 }
 
 
-# these take half a minute to minutes even at their shortest: they are run by hand, here only loaded
+# these take seconds to minutes even at their shortest: they are run by hand, here only loaded
 LONG = {
     "against_the_books.py",
     "flywheel.py",
     "metamorphic.py",
+    "random_files.py",
+    "speed_lines.py",
+    "start_up.py",
     "stiff_scenes.py",
     "sweep.py",
+    "torsion.py",
     "traces.py",
 }
 

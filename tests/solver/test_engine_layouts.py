@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import yaml
 
@@ -407,6 +408,44 @@ def test_a_rod_with_its_knuckle_on_the_crank_pin_is_a_rod_on_the_crank_pin() -> 
     other = Case(on_pin).cylinders[1].at([20.0, 100.0, 300.0])
     assert side.x == pytest.approx(other.x, abs=1e-7)
     assert side["b"] == pytest.approx(other["b"], rel=1e-5)
+
+
+FIRED = """
+{speed: 1500 rpm, cycle: four-stroke, cylinders: [
+  {name: main, crank: 60 mm, rod: 240 mm, bore: 100 mm, FRICTION
+   indicator: {head_end: {unit: bar, clearance: 0.2, interpolate: polytropic,
+     intake: [[0, -0.05], [1, -0.05]], compression: [[1, -0.05], [0, 8.8]],
+     expansion: [[0, 26], [0.03, 25], [1, 2.6]], exhaust: [[1, 0.1], [0, 0.1]]}}},
+  {name: side, like: main, bank_angle: 72 deg,
+   link_rod: {master: main, length: 185 mm, knuckle_radius: 52 mm, knuckle_angle: 75 deg}},
+  {name: other, like: main, bank_angle: 200 deg, link_rod: {master: main, knuckle_radius: 55 mm}}]}
+"""
+"""A radial without masses; the second cylinder fires a turn after the third one, 432 deg behind the first."""
+
+
+def test_the_guides_of_a_radial_carry_the_torque_back() -> None:
+    """Σ N h = M about the shaft, h from the shaft to each piston: massless rods leave the frame the reaction alone."""
+    case = Case(loads(FIRED.replace("FRICTION", "")))
+    shaft = np.array([10.0, 75.0, 100.0, 245.0, 440.0, 461.0, 600.0])
+    reaction = torque = 0.0
+    for forces in case.cylinders:
+        state = forces.at((shaft - forces.drive.lag) % 720)
+        mechanism = forces.mechanism
+        farthest = 0.3
+        if isinstance(mechanism, LinkedPiston):
+            farthest = mechanism._reach
+        reaction = reaction + state.N * (farthest - state.x)
+        torque = torque + state.M
+    assert reaction == pytest.approx(torque, rel=1e-12, abs=1e-12 * np.abs(torque).max())
+
+
+def test_the_guide_of_a_master_is_smooth_between_what_turns_round_in_its_links() -> None:
+    """Where a rubbing link changes the side of its guide the master's N has a kink: f |N| |dx| by 200,000 ordinates."""
+    forces = Case(loads(FIRED.replace("FRICTION", "friction: {crosshead: 0.08},"))).cylinders[0]
+    degrees = (np.arange(200_000) + 0.5) * 720 / 200_000
+    state = forces.at(degrees)
+    work = -(state.F_friction * state.slope).mean() * 4 * np.pi
+    assert forces.friction_works["crosshead"] == pytest.approx(work, rel=1e-5)
 
 
 def test_accuracy_and_strength_name_link_rods(tmp_path: Path) -> None:

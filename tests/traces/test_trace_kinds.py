@@ -196,3 +196,28 @@ def test_a_lost_sample_is_named_by_its_line(tmp_path: Path) -> None:
     pressures[36] = 9999
     with pytest.raises(MachineFileError, match=r"line 37: the pressure 9999 bar is no sample"):
         loads(machine_text(tmp_path, pressures))
+
+
+def test_the_other_end_with_another_clearance(tmp_path: Path) -> None:
+    """Its lines, with the clearance of the other end, show another dead centre than half a turn; the flanks do not."""
+    pressures = 19.6 * compressor(0.184, 1.9, 1.4)
+    text = machine_text(tmp_path, pressures, ", clearance: 0.1", end="crank_end")
+    (note,) = trace_notes(text)
+    assert re.search(r"'angle_zero: -?180 deg', or is it the trace of the head end\?", note)
+
+
+def test_rows_numbered_as_angles(tmp_path: Path) -> None:
+    """1024 samples of one cycle, 0 to 1023 for their angles: neither turns nor a four-stroke cycle."""
+    fine = np.arange(1024) * 360 / 1024
+    pressures = np.interp(fine, DEGREES + 180, compressor(0.158, 1.9, 1.4), period=360)
+    rows = np.arange(1024.0)
+    with pytest.raises(MachineFileError, match="if it numbers samples"):
+        loads(machine_text(tmp_path, pressures, degrees=rows))
+    with pytest.raises(MachineFileError, match="do these number the samples"):
+        loads(machine_text(tmp_path, pressures[::10], degrees=rows[:103]))
+
+
+def test_turns_at_each_degree_are_no_row_numbers(tmp_path: Path) -> None:
+    """Two turns and a half at 0, 1, … deg that repeat are a recording."""
+    pressures = np.tile(compressor(0.06, 8.0), 3)[:900]
+    loads(machine_text(tmp_path, pressures, degrees=np.arange(900.0)))

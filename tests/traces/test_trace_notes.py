@@ -12,6 +12,7 @@ from indicated import Engine, absolute, columns_file, cycles, fraction, indicate
 from kurbel.machine_file import loads
 from kurbel.mechanisms.setting import Setting
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.notes.left_out import forces_left_out
 from kurbel.notes.warnings import machine_notes
 from kurbel.solver.case import Case
 from kurbel.traces.checks import CHECKS, doubts
@@ -400,3 +401,38 @@ def test_a_dead_centre_two_degrees_off_is_seen_by_both_exponents(
     keys, _, _ = obeyed(notes[0], "", "absolute", "four-stroke")
     assert "angle_zero" in keys
     assert float(re.findall(r"-?[0-9.]+", keys)[0]) == pytest.approx(degrees, abs=1.0)
+
+
+@pytest.mark.parametrize("zero", [-4.0, 4.0])
+def test_samples_far_apart_show_the_dead_centre_to_half_a_step(tmp_path: Path, zero: float) -> None:
+    """4° off is nothing that samples 10° apart could show; samples 0.4° apart do."""
+    keys = f", compression_ratio: 15, angle_zero: {zero:g} deg"
+    angles = np.arange(0.0, 720.0, 10.0)
+    coarse = written(tmp_path, angles, absolute(ENGINE, angles))
+    assert notes_of(machine_text(coarse, keys)) == []
+    (note,) = notes_of(machine_text(written(tmp_path, FINE, absolute(ENGINE, FINE)), keys))
+    assert re.search(r"a dead centre [0-9.]+ ± [0-9.]+ deg off does that", note)
+
+
+def test_a_coarse_trace_against_the_rotation(tmp_path: Path) -> None:
+    """Samples 10° apart, the peak one of them before the dead centre, and a fired engine that takes work."""
+    angles = np.arange(0.0, 720.0, 10.0)
+    file = written(tmp_path, angles, absolute(ENGINE, -angles))
+    for keys in ("", ", compression_ratio: 15"):
+        assert "'angle_sense: against'" in notes_of(machine_text(file, keys))[0]
+
+
+def test_cycles_that_wander_have_no_scatter_of_p_i(tmp_path: Path) -> None:
+    """Fifteen equal cycles, each 1° later than the one before: what p_i scatters by is the encoder's."""
+    angles = np.arange(0.0, 720.0, 1.0)
+    columns = np.stack([absolute(ENGINE, angles - number) for number in range(15)])
+    text = machine_text(written(tmp_path, angles, columns.T), ", pressure_columns: 2-16")
+    case = Case(loads(text))
+    assert any("the cycles wander 14 deg later" in note.text for note in machine_notes(case))
+    forces = case.cylinders[0]
+    assert forces["cycles_measured"].value == 15
+    key_values = forces.rows.key_values
+    for id in ("mean_pressure_cov", "mean_pressure_std", "cycle_worst"):
+        assert key_values[id].of(forces) is None
+    reasons = [left_out.why for left_out in forces_left_out(case.machine, forces)]
+    assert "the measured cycles wander against each other" in reasons

@@ -7,7 +7,7 @@ members: a rod carries along its line, a block pushes square to its slot.
 
 import math
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import NamedTuple, Union
 
 import numpy as np
@@ -17,6 +17,7 @@ from kurbel.accuracy.methods import Precise, mp, mpf, roots_inside
 from kurbel.arrays import Array
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
+from kurbel.mechanisms.link_rod import LinkedPiston
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 
@@ -221,9 +222,70 @@ class ParallelMotion:
         return moment(pin, thrusts[0]) + moment(1j * pin, thrusts[1])
 
 
+class Knuckle(NamedTuple):
+    """The big end of a master rod, complex in the frame of a link's own stroke line, in m.
+
+    pin: the crank pin; rod: from it to the master's piston; across: the unit vector across the master's stroke line;
+    arm: from it to the knuckle pin; place: of the knuckle pin, with its derivatives.
+    """
+
+    pin: Precise
+    rod: Precise
+    across: Precise
+    arm: Precise
+    place: Jet
+
+
+class LinkMotion:
+    """A piston on a link rod: its knuckle pin turns with the master rod. start … never_returns: as of a `RodMotion`."""
+
+    start: Precise = mpf(0)
+    works_out = True
+    never_returns = False
+
+    def __init__(self, mechanism: LinkedPiston) -> None:
+        self.r = mpf(mechanism.crank)
+        self.between = mpf(mechanism.between)
+        self._master_rod = mpf(mechanism.master.rod)
+        self._master_offset = mpf(mechanism.master.offset)
+        self._radius = mpf(mechanism.radius)
+        self._angle = mpf(mechanism.angle)
+        self._length = mpf(mechanism.length)
+        self._offset = mpf(mechanism.own_offset)
+        self._top = mpf(0)
+        self.knuckle_at = cache(self._knuckle_at)
+        self.ends = dead_centres(self)
+        self._top = -self.at(self.ends[0]).x
+        self.stroke = self.at(self.ends[1]).x
+
+    def _knuckle_at(self, phi: Precise) -> Knuckle:
+        """Return crank pin, master rod and knuckle pin at the link's own crank angle."""
+        # in the frame of the master's stroke line
+        pin = Jet(self.r) * turned(phi + self.between)
+        aside = Jet(self._master_offset) - pin.imaginary()
+        along = (Jet(self._master_rod**2) - aside * aside).root()
+        rod = along + Jet(1j) * aside
+        turned_arm = self._radius / self._master_rod * turned(self._angle).value
+        arm = rod * Jet(turned_arm)
+
+        # in that of its own
+        line = turned(-self.between).value
+        place = (pin + arm) * Jet(line)
+        return Knuckle(pin.value * line, rod.value * line, 1j * line, arm.value * line, place)
+
+    def at(self, phi: Precise) -> Stance:
+        """Return the motion at the link's own crank angle."""
+        place = self.knuckle_at(phi).place
+        aside = place.imaginary() - Jet(self._offset)
+        along = (Jet(self._length**2) - aside * aside).root()
+        x = Jet(self._top) - place.real() - along
+        sin_psi = aside.value / self._length
+        return Stance(x.value, x.rate, x.bend, sin_psi, along.value / self._length)
+
+
 OtherMotion = Union[LeverMotion, LinkageMotion, ParallelMotion]
 """A mechanism of which only the joints are known."""
-TextbookMotion = Union[RodMotion, OtherMotion]
+TextbookMotion = Union[RodMotion, LinkMotion, OtherMotion]
 
 
 def motion_of(mechanism: Mechanism) -> TextbookMotion:
@@ -232,6 +294,8 @@ def motion_of(mechanism: Mechanism) -> TextbookMotion:
         return LeverMotion(mechanism)
     if isinstance(mechanism, FourBar):
         return LinkageMotion(mechanism)
+    if isinstance(mechanism, LinkedPiston):
+        return LinkMotion(mechanism)
     if isinstance(mechanism, ParallelCrank):
         return ParallelMotion(mechanism)
     return RodMotion(mechanism)
@@ -242,7 +306,7 @@ def moment(arm: Precise, force: Precise) -> Precise:
     return mp.im(mp.conj(arm) * force)
 
 
-def dead_centres(motion: LeverMotion | LinkageMotion) -> Array:
+def dead_centres(motion: LeverMotion | LinkageMotion | LinkMotion) -> Array:
     """Return where the output turns back in one turn: its smallest and its largest place, and the smallest again."""
     halves = np.array([mpf(0), mpf(180), mpf(360)])
     if motion.never_returns:

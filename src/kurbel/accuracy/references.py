@@ -1,9 +1,10 @@
 """References of a machine: what textbooks sum over its cylinders, integrated and searched in mpmath's numbers."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict
 from functools import partial
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -13,9 +14,14 @@ from kurbel.accuracy.methods import MethodValue, Precise, by_gauss, integrals, m
 from kurbel.accuracy.textbook import STEPS, TextbookCylinder
 from kurbel.arrays import Array
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.cylinder import crank_lag
+from kurbel.machine.cylinder import crank_lag, work_alike
 from kurbel.machine.shaft_side import Swing
 
+if TYPE_CHECKING:
+    from kurbel.traces.correct import Trace
+
+MOST_SAMPLES = 400
+"""Samples of a trace of which a reference is computed: its time is in proportion to them."""
 NEEDED: dict[str, Callable[[Precise], Precise]] = {
     "A_i": lambda state: state.slope * state.P_gas,
     "T_max, T_min": lambda state: state.T,
@@ -39,18 +45,26 @@ def unknown(machine: Machine, quantity: str) -> Iterator[str]:
     """Yield what of a machine has no independent calculation of a quantity here."""
     if quantity in "xcb":
         return
-    if any(cylinder.link_rod for cylinder in machine.cylinders):
-        yield "link rods"
     for cylinder in taking_part(machine, quantity):
         for piston in cylinder.pistons:
             for card in piston.chambers.values():
-                if not isinstance(card, KNOWN_CARDS):
-                    yield "a trace" if card.traced else "a card by Wiebe"
+                if card.traced:
+                    yield from _unknown_of_trace(card, quantity)
+                elif not isinstance(card, KNOWN_CARDS):
+                    yield "a card by Wiebe"
         friction = cylinder.friction
         if friction and friction.journals and machine.crankshaft is not None:
             yield "journals that rub in the bearings of a crankshaft"
     if quantity == "ΔE" and isinstance(machine.effort, Swing):
         yield "an effort of which the swing of energy is given"
+
+
+def _unknown_of_trace(trace: Trace, quantity: str) -> Iterator[str]:
+    """Yield what of a trace has no independent calculation of a quantity."""
+    if len(trace.angles) > MOST_SAMPLES:
+        yield f"a trace of more than {MOST_SAMPLES} samples"
+    elif quantity == "A_i" and trace.even:
+        yield "the work of a trace at equal angles, which is a sum over its samples"
 
 
 # sums
@@ -86,29 +100,60 @@ def needed(quantity: str, addends: Addends, phi: Precise, within: Precise) -> Pr
     return total
 
 
-class Textbook:
-    """The references of a machine, which share its cylinders; equal cylinders are one."""
+class AlikeCylinders(NamedTuple):
+    """A cylinder of the textbook, of which others have the same: with its surroundings and the lags of its links."""
 
-    def __init__(self, machine: Machine) -> None:
+    cylinder: Cylinder
+    surroundings: tuple[object, ...]
+    links: tuple[tuple[TextbookCylinder, Precise], ...]
+    textbook: TextbookCylinder
+
+
+class Textbook:
+    """The references of a machine, which share its cylinders; equal cylinders are one.
+
+    earlier: of another machine, whose cylinders are taken over where they are equal.
+    """
+
+    def __init__(self, machine: Machine, earlier: Textbook | None = None) -> None:
         self.machine = machine
-        self._cylinders: list[tuple[dict[str, Any], TextbookCylinder]] = []
+        self._cylinders: list[AlikeCylinders] = earlier._cylinders if earlier else []
 
     def cylinder(self, cylinder: Cylinder) -> TextbookCylinder:
         """Return the cylinder of the textbook for one of the file; where it is on the shaft makes no difference."""
-        values = asdict(cylinder)
-        for key in ("name", "crank_position", "bank_angle", "axial_position"):
-            del values[key]
-        for earlier_values, earlier in self._cylinders:
-            if earlier_values == values:
-                return earlier
-        textbook_cylinder = TextbookCylinder(self.machine, cylinder)
-        self._cylinders.append((values, textbook_cylinder))
+        machine = self.machine
+        surroundings = (
+            machine.speed,
+            machine.ambient,
+            machine.cycle,
+            machine.inclination_of(cylinder),
+            machine.crankshaft,
+            machine.pump,
+        )
+        links = []
+        for link in machine.cylinders:
+            if link.hangs_on(cylinder.name):
+                links.append((self.cylinder(link), mpf(lag_of_link(link, cylinder))))
+        for earlier in self._cylinders:
+            is_alike = work_alike(earlier.cylinder, cylinder)
+            if is_alike and earlier.surroundings == surroundings and earlier.links == tuple(links):
+                return earlier.textbook
+        textbook_cylinder = TextbookCylinder(machine, cylinder, links)
+        alike = AlikeCylinders(cylinder, surroundings, tuple(links), textbook_cylinder)
+        self._cylinders.append(alike)
         return textbook_cylinder
 
     def reference(self, quantity: str) -> MethodValue:
         """Return A_i and A_f in J, T_max and T_min in N, of the first cylinder, or ΔE in J."""
         book = TextbookMachine(self, quantity)
         return by_gauss(quantity, book.function(quantity), book.edges, STEPS)
+
+
+def lag_of_link(link: Cylinder, master: Cylinder) -> float:
+    """Return the degrees by which the crank angle of a link lags that of its master, in its own turn of the cycle."""
+    between = link.bank_angle - master.bank_angle
+    turns = round((crank_lag(link, master) - between) / 360)
+    return between + 360 * turns
 
 
 class TextbookMachine:

@@ -226,10 +226,11 @@ class Fits:
 class TextbookShaft:
     """Equation and torque of a machine; edges: in degrees, between which the torque is smooth."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, textbook: Textbook) -> None:
+        machine = textbook.machine
         assert machine.speed is not None
         assert machine.flywheel is not None
-        self._book = TextbookMachine(Textbook(machine), "ΔE")
+        self._book = TextbookMachine(textbook, "ΔE")
         self.cycle = 360 * machine.revolutions
         self.nominal = 2 * mp.pi * mpf(machine.speed)
         self._rigid = mpf(machine.flywheel.inertia)

@@ -13,6 +13,7 @@ import numpy as np
 
 from kurbel.accuracy.marching import Marched, Problem, rivals
 from kurbel.accuracy.methods import Precise, mp, mpf
+from kurbel.accuracy.references import Textbook
 from kurbel.accuracy.shaft import (
     EVERY,
     MOST,
@@ -63,15 +64,16 @@ def reference_of(columns: Sequence[str]) -> SpeedOfShaft:
 
 
 def examined_speed(
-    machine: Machine, columns: Sequence[str], quick: bool
+    textbook: Textbook, columns: Sequence[str], quick: bool
 ) -> tuple[list[SpeedTrial], str]:
     """Return the trials of the speed of a machine, or why there are none; columns: of its reference, if it is known."""
+    machine = textbook.machine
     with mp.workdps(DIGITS):
         if why := next(without_reference(machine), ""):
             return [], why
         try:
             speed_by_kurbel(MachineTurning(Case(machine).effort))
-            shaft = TextbookShaft(machine)
+            shaft = TextbookShaft(textbook)
             truth = reference_of(columns) if columns else speed_of(shaft, MOST)
         except (KurbelError, ArithmeticError) as error:
             return [], str(error)

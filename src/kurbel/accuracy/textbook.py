@@ -15,9 +15,11 @@ the rod's crosshead pin, Z that on the crank pin, τ the moment of weight and in
 pins. Friction in pins is that under the loads without it, as by the friction circles of the books.
 """
 
-from collections.abc import Iterator
-from functools import cache
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 
@@ -30,7 +32,14 @@ from kurbel.accuracy.cards import (
     of_liquid,
 )
 from kurbel.accuracy.jets import Jet
-from kurbel.accuracy.linkages import RodMotion, Stance, TextbookMotion, motion_of
+from kurbel.accuracy.linkages import (
+    LinkMotion,
+    RodMotion,
+    Stance,
+    TextbookMotion,
+    moment,
+    motion_of,
+)
 from kurbel.accuracy.loads import TextbookLoads
 from kurbel.accuracy.methods import (
     Precise,
@@ -46,6 +55,10 @@ from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.parts import Friction, GasOnRings, Piston
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.mechanisms.setting import Setting
+
+if TYPE_CHECKING:
+    from kurbel.accuracy.traced import TracedChamber
 
 DIGITS = 40
 STEPS = 24
@@ -68,21 +81,30 @@ class TextbookChamber(NamedTuple):
     area: Precise
     strokes: int
 
+    @property
+    def corners(self) -> list[Precise]:
+        """No crank angles: a card bends at shares of a stroke."""
+        return []
+
     def lines(self, stroke: int) -> list[StrokeLine]:
         """Return the card's lines on a stroke of the cycle."""
         number = (stroke - (self.sign < 0)) % self.strokes
         return [line for line in self.card.lines if line.stroke == number]
 
+    def shares(self, stroke: int) -> set[Precise]:
+        """Return the shares of the crosshead's stroke at which the lines of a stroke begin."""
+        return {self.fraction(line.begin) for line in self.lines(stroke)}
+
     def fraction(self, share: Precise) -> Precise:
         """Return z of the card at a share of the crosshead's stroke, or that share at z."""
         return share if self.sign > 0 else 1 - share
 
-    def line_at(self, stroke: int, share: Precise) -> StrokeLine:
+    def line_at(self, stroke: int, share: Precise, within: Precise) -> StrokeLine:
         """Return the line on which the gas is at a share of the crosshead's stroke."""
         z = self.fraction(share)
         return next(line for line in self.lines(stroke) if (line.begin - z) * (line.end - z) < 0)
 
-    def pressure(self, line: StrokeLine, share: Precise) -> Precise:
+    def pressure(self, line: StrokeLine, share: Precise, phi: Precise) -> Precise:
         """Return the absolute pressure at a share of the crosshead's stroke, on one of the lines."""
         return self.card.at(line, self.fraction(share))
 
@@ -98,10 +120,15 @@ class TextbookChamber(NamedTuple):
         return self.area * areas
 
 
+AnyChamber = Union[TextbookChamber, "TracedChamber"]
+Line = Any
+"""A line of a card, or the number of the sample at which one of a trace begins."""
+
+
 class PistonProcess(NamedTuple):
     """The chambers of a piston; is_own: whether it is the cylinder's own one; drives: by the work of its gas."""
 
-    chambers: tuple[TextbookChamber, ...]
+    chambers: tuple[AnyChamber, ...]
     is_own: bool
     work: Precise
 
@@ -146,7 +173,8 @@ class Forces(NamedTuple):
     """dx/dφ in m; in N the gas force, that on driving pistons, friction along x and T; M in N m.
 
     losses: in N m, in pins, journals and the block of a yoke. The names are those of the columns of the solver; inertia
-    is that at uniform speed. kinks: as of `PinLoads`.
+    is that at uniform speed. kinks: as of `PinLoads`. on_master: moment in N m of a link rod on its master rod about the
+    crank pin.
     """
 
     slope: Precise
@@ -157,13 +185,23 @@ class Forces(NamedTuple):
     T: Precise
     M: Precise
     kinks: tuple[Precise, ...]
+    on_master: Precise = mpf(0)
 
 
 class TextbookCylinder:
-    """Forces of one cylinder; edges: of the pieces of its cycle between the corners of cards and of friction."""
+    """Forces of one cylinder; edges: of the pieces of its cycle between the corners of cards and of friction.
 
-    def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
+    links: the cylinders whose link rods are on its master rod, with the degrees by which their crank angles lag its own.
+    """
+
+    def __init__(
+        self,
+        machine: Machine,
+        cylinder: Cylinder,
+        links: Sequence[tuple[TextbookCylinder, Precise]] = (),
+    ) -> None:
         self.motion: TextbookMotion = motion_of(cylinder.mechanism)
+        self._links = links
         self.turns = CYCLES[machine.cycle_of(cylinder)]
         self.omega = 2 * mp.pi * mpf(machine.speed or 0.0)
         self._ambient = mpf(machine.ambient)
@@ -172,6 +210,8 @@ class TextbookCylinder:
         self._crankshaft = machine.crankshaft
         self._set_masses(machine.inclination_of(cylinder))
         self._set_friction(cylinder.friction)
+        link_rod = cylinder.link_rod
+        self._knuckle_mass = mpf(link_rod.knuckle_mass if link_rod else 0.0)
         motion = self.motion
         self._loads_on_output = TextbookLoads(
             cylinder, motion.stroke, self.turns, motion.works_out, motion.never_returns
@@ -179,9 +219,6 @@ class TextbookCylinder:
         self.pistons = [self._piston(machine, number) for number in range(len(cylinder.pistons))]
         self._piece = cache(self._piece_of)
         self._states: dict[tuple[int, int], Forces] = {}
-        self.edges = merged(np.array(list(self._corners())))
-        if self._rubs:
-            self.edges = self._between_kinks()
 
     def _set_masses(self, inclination: float | None) -> None:
         """Set the mass of what slides, the rod, and the parts of gravity along and across the stroke line."""
@@ -248,14 +285,25 @@ class TextbookCylinder:
         lift = mpf(0) if is_absolute else self._ambient
         turns = CYCLES[machine.cycle_of_piston(self._cylinder, number)]
         valve = None if number else self._cylinder.valve
-        chambers = []
+        chambers: list[AnyChamber] = []
         for end, card in piston.chambers.items():
-            assert isinstance(card, KNOWN_CARDS)
             is_head = end == "head_end"
             ratio = piston.lever_ratio
             thickness = mpf(piston.head_end_rod if is_head else piston.crank_end_rod)
             area = mp.pi / 4 * (mpf(piston.bore) ** 2 - thickness**2) * abs(mpf(ratio))
             sign = 1 if is_head == (ratio > 0) else -1
+            if card.traced:
+                setting = Setting(
+                    self._mechanism,
+                    cycle=360.0 * turns,
+                    head_end=sign > 0,
+                    ambient=machine.ambient,
+                    absolute=is_absolute,
+                    mirrored=not is_head and card is piston.chambers.get("head_end"),
+                )
+                chambers.append(_traced()(card, setting, self.motion, sign, area))
+                continue
+            assert isinstance(card, KNOWN_CARDS)
             events = None
             if valve is not None and isinstance(card, Steam):
                 shares = np.array([self._share(angle) for angle in events_of(valve, end)])
@@ -292,28 +340,47 @@ class TextbookCylinder:
                 (angle,), _ = roots_inside(beyond, np.array([begin]), np.array([end]), STEPS)
                 yield angle + 360 * turn
 
+        # angles of samples, and of what bends in the links of a master that rubs
+        angles: list[Precise] = []
+        for piston in self.pistons:
+            for chamber in piston.chambers:
+                angles += chamber.corners
+        if self._crosshead:
+            for link, lag in self._links:
+                angles += [edge + lag for edge in link.edges]
+        first = self.motion.ends[0]
+        for angle in angles:
+            for turn in range(self.turns):
+                yield first + (angle + 360 * turn - first) % (360 * self.turns)
+
     def _shares(self, stroke: int) -> set[Precise]:
         """Return the shares of the stroke inside it at which a card bends or jumps."""
         shares: set[Precise] = set()
         for piston in self.pistons:
             for chamber in piston.chambers:
-                shares |= {chamber.fraction(line.begin) for line in chamber.lines(stroke)}
+                shares |= chamber.shares(stroke)
         shares |= self._loads_on_output.fractions(is_back=stroke % 2 == 1)
         return shares - {0, 1}
 
-    def _between_kinks(self) -> Array:
+    @cached_property
+    def edges(self) -> Array:
+        """The crank angles of one cycle between which the forces are smooth, its ends included."""
+        edges = merged(np.array(list(self._corners())))
+        return self._with_kinks(edges) if self._rubs else edges
+
+    def _with_kinks(self, corners: Array) -> Array:
         """Return the edges with the angles at which friction turns round."""
-        edges = [self.edges]
-        count = len(self.at(self.edges[0], (self.edges[0] + self.edges[1]) / 2).kinks)
+        edges = [corners]
+        count = len(self.at(corners[0], (corners[0] + corners[1]) / 2).kinks)
         for number in range(count):
             kink = np.frompyfunc(
                 lambda phi, within, number=number: self.at(phi, within).kinks[number], 2, 1
             )
-            turned, _ = roots_inside(kink, self.edges[:-1], self.edges[1:], STEPS)
+            turned, _ = roots_inside(kink, corners[:-1], corners[1:], STEPS)
             edges.append(turned)
         return merged(np.concatenate(edges))
 
-    def _piece_of(self, within: Precise) -> tuple[int, list[list[StrokeLine]]]:
+    def _piece_of(self, within: Precise) -> tuple[int, list[list[Line]]]:
         """Return the sense of the stroke on a piece, and on which line of its card each chamber is."""
         inner, outer, _ = self.motion.ends
         since = (within - inner) % (360 * self.turns)
@@ -323,7 +390,7 @@ class TextbookCylinder:
         stroke = 2 * turn + back
         lines = []
         for piston in self.pistons:
-            lines.append([chamber.line_at(stroke, share) for chamber in piston.chambers])
+            lines.append([chamber.line_at(stroke, share, within) for chamber in piston.chambers])
         return -1 if back and not self.motion.never_returns else 1, lines
 
     # forces
@@ -343,7 +410,7 @@ class TextbookCylinder:
         """Return the forces at a crank angle, computed anew."""
         pose = self.motion.at(phi)
         sense, lines = self._piece(within)
-        gas = self._gas(pose, lines)
+        gas = self._gas(phi, pose, lines)
         share = (pose.x - self.motion.start) / self.motion.stroke
         load = self._loads_on_output.at(share, self._share(within), sense)
         driving = gas.driving + load if self._loads_on_output.work > IDLE else gas.driving
@@ -352,6 +419,9 @@ class TextbookCylinder:
         # along the stroke line, without a rod
         push = gas.force + load - sense * steady
         push += self._parts * (self._g[0] - self.omega**2 * pose.curvature)
+        if isinstance(self.motion, LinkMotion):
+            with_loads = gas._replace(driving=driving)
+            return self._on_knuckle(phi, pose, sense, push, with_loads, steady)
         if not isinstance(self.motion, RodMotion):
             M = self.motion.torque_of(push, phi)
             friction = -sense * steady
@@ -361,7 +431,7 @@ class TextbookCylinder:
         # on the crank pin
         side = mp.sign(mp.cospi(within / 180))
         if self._mechanism.has_rod:
-            loads, losses, on_crank = self._on_rod(phi, pose, sense, push, side)
+            loads, losses, on_crank = self._on_rod(phi, within, pose, sense, push, side)
         else:
             loads, losses, on_crank = self._on_yoke(phi, sense, push, side)
         T_pin = loads.Z[0] * mp.sinpi(phi / 180) + loads.Z[1] * mp.cospi(phi / 180)
@@ -371,7 +441,7 @@ class TextbookCylinder:
         kinks = (*loads.kinks, gas.difference)
         return Forces(pose.slope, gas.force, driving, friction, losses, T, M, kinks)
 
-    def _gas(self, pose: Stance, lines: list[list[StrokeLine]]) -> GasForces:
+    def _gas(self, phi: Precise, pose: Stance, lines: list[list[Line]]) -> GasForces:
         """Return the forces of the gas on all pistons."""
         force = driving = difference = mpf(0)
         if not self.pistons:
@@ -380,7 +450,7 @@ class TextbookCylinder:
         for piston, its_lines in zip(self.pistons, lines):
             on_piston = mpf(0)
             for chamber, line in zip(piston.chambers, its_lines):
-                above = chamber.pressure(line, share) - self._ambient
+                above = chamber.pressure(line, share, phi) - self._ambient
                 on_piston += chamber.sign * chamber.area * above
                 if piston.is_own:
                     difference += chamber.sign * above
@@ -389,11 +459,47 @@ class TextbookCylinder:
                 driving += on_piston
         return GasForces(force, driving, difference)
 
+    def _on_knuckle(
+        self,
+        phi: Precise,
+        pose: Stance,
+        sense: int,
+        push: Precise,
+        gas: GasForces,
+        steady: Precise,
+    ) -> Forces:
+        """Return the forces of a cylinder with a link rod: what reaches the crank pin through its master rod.
+
+        Q = Z − m_k ω² z″          on the knuckle pin, at a from the crank pin
+        a × Q + L × n = 0          n: side force on the master's piston pin, square to its stroke line
+        M = R × (Q + n)
+        """
+        assert isinstance(self.motion, LinkMotion)
+        loads = self._loads(pose, Jet(mpf(0)), sense, push, mpf(0))
+        knuckle = self.motion.knuckle_at(phi)
+        force = mp.mpc(-loads.Z[0], loads.Z[1])
+        force -= self._knuckle_mass * self.omega**2 * knuckle.place.bend
+        on_master = moment(knuckle.arm, force)
+        side_force = -on_master / moment(knuckle.rod, knuckle.across) * knuckle.across
+        M = moment(knuckle.pin, force + side_force)
+        friction = -sense * (loads.drag + steady)
+        kinks = (*loads.kinks, gas.difference)
+        of_gas = (pose.slope, gas.force, gas.driving)
+        return Forces(*of_gas, friction, {}, M / self.motion.r, M, kinks, on_master)
+
     def _on_rod(
-        self, phi: Precise, pose: Stance, sense: int, push: Precise, side: Precise
+        self,
+        phi: Precise,
+        within: Precise,
+        pose: Stance,
+        sense: int,
+        push: Precise,
+        side: Precise,
     ) -> tuple[PinLoads, dict[str, Precise], Precise]:
         """Return the loads on the pins of a rod, the losses there, and what the shaft loses; side: sign of cos φ."""
         swing = self._swing(phi, pose)
+        if self._links:
+            return self._on_master_rod(phi, within, pose, sense, push), {}, mpf(0)
         loads = self._loads(pose, swing, sense, push, mpf(0))
         if not self._pins_rub:
             return loads, {}, mpf(0)
@@ -416,6 +522,17 @@ class TextbookCylinder:
         kinks = (*loads.kinks, *rubbed.kinks)
         return rubbed._replace(kinks=kinks), losses, crank + journals
 
+    def _on_master_rod(
+        self, phi: Precise, within: Precise, pose: Stance, sense: int, push: Precise
+    ) -> PinLoads:
+        """Return the loads on the pins of a master rod, on the crank pin without those of its links."""
+        couple = mpf(0)
+        for link, lag in self._links:
+            couple += link.at(phi - lag, within - lag).on_master
+        loads = self._loads(pose, self._swing(phi, pose), sense, push, couple)
+        side_force = couple / (mpf(self._mechanism.rod_length) * pose.cos_psi)
+        return loads._replace(Z=(loads.Z[0], loads.Z[1] + side_force))
+
     def _swing(self, phi: Precise, pose: Stance) -> Jet:
         """Return the angle of the rod with its derivatives, from L sin ψ = R sin φ − e."""
         ratio = self.motion.r / mpf(self._mechanism.rod_length)
@@ -426,7 +543,7 @@ class TextbookCylinder:
     def _loads(
         self, pose: Stance, swing: Jet, sense: int, push: Precise, couple: Precise
     ) -> PinLoads:
-        """Return N and the forces on the pins of a rod; couple: by friction in the pins, in the sense of rotation."""
+        """Return N and the forces on the pins of a rod; couple: by friction or by links, in the sense of rotation."""
         sin = pose.sin_psi
         cos = pose.cos_psi
         length = mpf(self._mechanism.rod_length)
@@ -470,7 +587,13 @@ class TextbookCylinder:
         pose = self.motion.at(phi)
         masses = self._cylinder.masses
         inertia = self._parts * pose.slope**2
-        if masses is None or not isinstance(self.motion, RodMotion):
+        if masses is None:
+            return inertia
+        if isinstance(self.motion, LinkMotion):
+            speed = self.motion.knuckle_at(phi).place.rate
+            inertia += self._rod.mass * pose.slope**2 + self._knuckle_mass * abs(speed) ** 2
+            return inertia + mpf(masses.rotating) * self.motion.r**2
+        if not isinstance(self.motion, RodMotion):
             return inertia
         inertia += (mpf(masses.rotating) + self._rod.pin_mass) * self.motion.r**2
         swing = self._swing(phi, pose)
@@ -494,3 +617,9 @@ class TextbookCylinder:
 def _radius(coefficient: float | None, diameter: float | None) -> Precise:
     """Return the radius of a circle of friction in m, f d/2; 0 where nothing rubs."""
     return mpf(coefficient or 0.0) * mpf(diameter or 0.0) / 2
+
+
+def _traced() -> type[TracedChamber]:
+    from kurbel.accuracy.traced import TracedChamber
+
+    return TracedChamber

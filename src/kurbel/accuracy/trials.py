@@ -50,6 +50,8 @@ from kurbel.solver.forces import CylinderForces
 OWN = "kurbel"
 CORNERS = "between the corners"
 ROUNDING = 2.0**-53
+_LONG_ENOUGH = 40.0
+"""Milliseconds of runs after which a time is known."""
 Method = tuple[str, str, Callable[[], object]]
 """Name, how finely, and what computes one value, the largest and the smallest, or (n,)."""
 T = TypeVar("T")
@@ -87,13 +89,13 @@ class Saving(NamedTuple):
 
 
 def examined(
-    machine: Machine, degrees: Array, quick: bool
+    textbook: Textbook, degrees: Array, quick: bool
 ) -> tuple[list[Trial], dict[str, list[str]]]:
     """Return the trials of a machine, of its motion at these crank angles, and why which quantities are left out."""
+    machine = textbook.machine
     rows: list[Trial] = []
     left_out: dict[str, list[str]] = {}
     motion = "xcb" if machine.cylinders and len(degrees) else ""
-    textbook = Textbook(machine)
     with mp.workdps(DIGITS):
         for quantity in (*motion, *NEEDED):
             try:
@@ -303,10 +305,10 @@ def errors(values: Array, truth: Array) -> tuple[float | None, float | None]:
 
 
 def timed(run: Callable[[], object], quick: bool) -> tuple[float, float]:
-    """Return the median and the least time in ms of 15 runs, or those of 0.06 s (quick: of 5, or of 0.05 s)."""
-    most, limit = (5, 50) if quick else (15, 60)
+    """Return the median and the least time in ms of 15 runs, or those of 0.04 s (quick: of 5 at most)."""
+    most = 5 if quick else 15
     times: list[float] = []
-    while len(times) < most and sum(times) < limit:
+    while len(times) < most and sum(times) < _LONG_ENOUGH:
         begin = time.perf_counter()
         run()
         times.append(1e3 * (time.perf_counter() - begin))

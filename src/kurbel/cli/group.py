@@ -1,5 +1,6 @@
 """The group of commands, and the one place where errors become messages and exit statuses."""
 
+import inspect
 import math
 import os
 import sys
@@ -55,8 +56,33 @@ def _legend(texts: Iterable[str]) -> str:
     return legend(texts)
 
 
+_FIRST_OPTIONS = ("vary", "ratio", "rows", "columns", "names", "units", "format", "file_name")
+"""Options that most calls of a command have: its help begins with them."""
+
+
 class KurbelCommand(click.Command):
-    """A command whose help ends with the books to which it refers, and with its exit statuses."""
+    """A command whose help shows on its first screen what it prints, an example, and the options of most calls.
+
+    Further paragraphs follow the options; the help ends with the books to which it refers, and with its exit statuses.
+    """
+
+    def __init__(self, *args: Any, **extra: Any) -> None:
+        super().__init__(*args, **extra)
+        self.params.sort(key=_place_in_help)
+
+    def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the first paragraph, and the example."""
+        first, _ = self.first_and_further_help()
+        formatter.write_paragraph()
+        with formatter.indentation():
+            formatter.write_text(first)
+            formatter.write_paragraph()
+            formatter.write_text(f"\b\nExample: {COMMANDS[self.name or ''].example}")
+
+    def first_and_further_help(self) -> tuple[str, str]:
+        """Return the first paragraph of the help, and those that follow it."""
+        first, _, further = inspect.cleandoc(self.help or "").partition("\n\n")
+        return first, further
 
     def end_of_help(self) -> list[str]:
         """Return these paragraphs, in ASCII."""
@@ -66,9 +92,19 @@ class KurbelCommand(click.Command):
         return [text for text in (books, exit_statuses(self.name or "")) if text]
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        for text in self.end_of_help():
+        _, further = self.first_and_further_help()
+        paragraphs = [further] if further else []
+        for text in (*paragraphs, *self.end_of_help()):
             formatter.write_paragraph()
             formatter.write_text(text)
+
+
+def _place_in_help(parameter: click.Parameter) -> int:
+    """Return the place of an option among those that come first, arguments before them, all others behind."""
+    if isinstance(parameter, click.Argument):
+        return -1
+    name = parameter.name or ""
+    return _FIRST_OPTIONS.index(name) if name in _FIRST_OPTIONS else len(_FIRST_OPTIONS)
 
 
 class Kurbel(click.Group):

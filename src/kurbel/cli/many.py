@@ -55,7 +55,7 @@ _what_is_printed = stacked(
         KEY_VALUES,
         "columns",
         type=key_values,
-        metavar="ID,ID,...",
+        metavar="IDS",
         help="Key values of any command, by id or symbol; those of forces if not given.",
     ),
     click.option(

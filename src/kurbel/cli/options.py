@@ -287,8 +287,11 @@ def key_value_option(*names: str, **how: Any) -> Callable[[Command], Command]:
 
 def format_option(*formats: str, said: str = "") -> Callable[[Command], Command]:
     """Return the option of the output format; said: what its help begins with."""
-    text = f"{said}By the suffix of --output, or table, if not given."
-    return click.option("--format", "-f", "format", type=click.Choice(formats), help=text)
+    listed = said or f"{', '.join(formats)}; "
+    text = f"{listed}if not given by the suffix of --output, or table."
+    return click.option(
+        "--format", "-f", "format", type=click.Choice(formats), metavar="FORMAT", help=text
+    )
 
 
 case_option = click.option(
@@ -377,8 +380,9 @@ units_option = click.option(
     type=click.Choice(["si", "metric", "technical", "imperial"]),
     callback=_write_messages_in,
     is_eager=True,  # the other options have messages, too
-    help="metric: mm, bar, kN, the default of tables and workbooks; technical: mm, kgf, at, as the old books; "
-    "imperial: in, lbf, psi, deg F; si: the default of csv and json.",
+    metavar="SYSTEM",
+    help="metric (mm, bar, kN), technical (mm, kgf, at), imperial (in, lbf, psi, deg F) or si; if not given si in "
+    "csv and json, else metric.",
 )
 
 
@@ -398,7 +402,7 @@ output_option = click.option(
     "-o",
     "file_name",
     metavar="FILE",
-    help="Write to this file instead of standard output.",
+    help="Write to FILE, not to standard output.",
 )
 number_options = stacked(
     click.option(
@@ -420,7 +424,7 @@ _look_options = stacked(
         "--layout",
         type=click.Choice(LAYOUTS),
         default="book",
-        help="book: angles across; rows: one line per angle.",
+        help="book: angles across; rows: a line for each.",
     ),
     format_option(*FORMATS),
     output_option,

@@ -125,7 +125,7 @@ def plot(**options: Any) -> None:
     "table",
     "json",
     "junit",
-    said="json: every finding with its place; junit: XML that CI services read. ",
+    said="table, json (every finding with its place) or junit (XML for CI services); ",
 )
 @click.option("--quiet", "-q", is_flag=True, help="Print what FAILs, and nothing else.")
 @units_option

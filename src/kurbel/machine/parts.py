@@ -428,7 +428,11 @@ class Piston(Record):
     """
 
     bore: float = field(
-        "length", "Diameter of the cylinder", "d", above=0, also=("bohrung", "cylinder_diameter")
+        "length",
+        "Diameter of the cylinder",
+        "d",
+        above=0,
+        also=("bohrung", "cylinder_diameter", "piston_diameter", "bore_diameter"),
     )
     displacement: float | None = field(
         "volume",

@@ -241,10 +241,9 @@ class Pump(Record):
                 if fractions is None:
                     continue
                 message = (
-                    "with {K:stress} the liquid is compressed over the whole stroke of '"
-                    + piston.name
-                    + "', and nothing is delivered"
+                    "with {K:stress} the liquid is compressed over the whole stroke of '{name}', "
+                    "and nothing is delivered"
                 )
-                numbers = {"K": self.liquid.bulk_modulus}
+                numbers = {"K": self.liquid.bulk_modulus, "name": piston.name}
                 path = ("pump", "liquid", "bulk_modulus")
                 yield Rule(path, fractions[1] <= 0, message, numbers)

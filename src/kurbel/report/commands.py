@@ -25,7 +25,7 @@ class Command(NamedTuple):
     angle; options: those of `where` and `uncertainty` that it takes. first: ids of the columns, key values and tables
     that are shown on a terminal with too few lines for all; named: those of its key values that it never
     drops, however few the lines; in_cases: ids of the key values in its table of load cases,
-    '' for a command that has none.
+    '' for a command that has none; example: a line of the shell, which its help shows.
     """
 
     word: str
@@ -38,6 +38,7 @@ class Command(NamedTuple):
     first: str = ""
     named: str = ""
     in_cases: str = ""
+    example: str = ""
 
     @property
     def title(self) -> str:
@@ -177,13 +178,18 @@ def _delivery() -> "Functions":
 
 _STALLS = (NO_SOLUTION,)
 _ROWS = (
-    Command("table", "Zusammenstellung 112 for any L/R; needs no machine file."),
+    Command(
+        "table",
+        "Zusammenstellung 112 for any L/R; needs no machine file.",
+        example="kurbel table --ratio 5",
+    ),
     Command(
         "motion",
         "Displacement, velocity, acceleration of any mechanism.",
         _motion,
         section=(9, "Motion"),
         first="x c b theta theta_dot stroke swing c_m c_max b_max b_min time_ratio",
+        example="kurbel motion engine.yaml --columns x,c,b --step 15",
     ),
     Command(
         "forces",
@@ -197,6 +203,7 @@ _ROWS = (
         "power_indicated power_friction mechanical_efficiency",
         named="b_max c_max theta_ddot_max theta_dot_max friction_work friction_power friction_loss power_friction",
         in_cases="p_max P_max P_min T_max rod_compression_max rod_tension_max reversal_angle reversal_ratio work power",
+        example="kurbel forces engine.yaml --columns P,N,T -o forces.csv",
     ),
     Command(
         "flywheel",
@@ -206,6 +213,7 @@ _ROWS = (
         section=(1, "Turning effort and flywheel"),
         options=("where", "uncertainty"),
         first="T M E omega M_mean power_shaft T_max dE energy_fluctuation J J_needed delta",
+        example="kurbel flywheel engine.yaml --key-values dE J delta",
     ),
     Command(
         "stress",
@@ -216,6 +224,7 @@ _ROWS = (
         options=("uncertainty",),
         first="P_dc safety_pin_min safety_web_A_min safety_web_B_min safety_journal_A_min safety_journal_B_min "
         "A_max B_max p_pin_max p_journal_A_max p_journal_B_max",
+        example="kurbel stress engine.yaml --places",
     ),
     Command(
         "bearings",
@@ -225,6 +234,7 @@ _ROWS = (
         section=(4, "Bearings"),
         first="load load_max load_mean unloaded_arc pressure_max pressure_velocity",
         in_cases="load_max load_mean pressure_max pressure_velocity unloaded_arc",
+        example="kurbel bearings engine.yaml --cylinder 'crank pin'",
     ),
     Command(
         "balance",
@@ -235,6 +245,7 @@ _ROWS = (
         first="F_free_max M_free_max counterweight_best counterweight_best_angle share_best F_free_best "
         "orders best_weights wheels "
         "hammer_blow hammer_train_speed",
+        example="kurbel balance engine.yaml --orders",
     ),
     Command(
         "harmonics",
@@ -242,6 +253,7 @@ _ROWS = (
         _harmonics,
         section=(8, "Orders of the turning effort"),
         over_angle=False,
+        example="kurbel harmonics engine.yaml --orders 0.5:6:0.5",
     ),
     Command(
         "torsion",
@@ -251,6 +263,7 @@ _ROWS = (
         section=(7, "Torsional vibration"),
         first="modes critical_speeds natural_frequency M_vibratory tau_vibratory",
         in_cases="natural_frequency M_vibratory tau_vibratory vibration_loss",
+        example="kurbel torsion engine.yaml --speeds '300:900:10 rpm'",
     ),
     Command(
         "delivery",
@@ -263,25 +276,73 @@ _ROWS = (
         "discharge_temperature stage_power isentropic_efficiency",
         in_cases="volumetric_efficiency capacity mass_flow discharge_temperature stage_power isentropic_efficiency "
         "flow_mean flow_max volume_fluctuation vessel_volume vessel_swing suction_lift_max npsh_available",
+        example="kurbel delivery pump.yaml --key-values",
     ),
-    Command("plot", "Pictures, in the terminal or as SVG, PNG, PDF.", statuses=_STALLS),
-    Command("report", "Everything on one page of HTML; two machines side by side."),
-    Command("sweep", "Key values of many designs of a machine."),
-    Command("find", "The value of a key that gives a wanted key value.", statuses=_STALLS),
+    Command(
+        "plot",
+        "Pictures, in the terminal or as SVG, PNG, PDF.",
+        statuses=_STALLS,
+        example="kurbel plot engine.yaml effort -o effort.svg",
+    ),
+    Command(
+        "report",
+        "Everything on one page of HTML; two machines side by side.",
+        example="kurbel report engine.yaml -o report.html",
+    ),
+    Command(
+        "sweep",
+        "Key values of many designs of a machine.",
+        example="kurbel sweep engine.yaml --vary rod_ratio=3:6:0.5 --columns T_max",
+    ),
+    Command(
+        "find",
+        "The value of a key that gives a wanted key value.",
+        statuses=_STALLS,
+        example="kurbel find engine.yaml 'power = 100 kW' --vary 'bore=300:500 mm'",
+    ),
     Command(
         "accuracy",
         "Error against run time; stiff and extreme cases.",
         statuses=(BROKEN, NO_SOLUTION),
+        example="kurbel accuracy engine.yaml",
     ),
-    Command("friction", "Body on an inclined plane; needs no machine file."),
     Command(
-        "check", "Read and check a machine file and its limits.", statuses=(BROKEN, NO_SOLUTION)
+        "friction",
+        "Body on an inclined plane; needs no machine file.",
+        example="kurbel friction --incline 10 --coefficient 0.1",
     ),
-    Command("example", "List the shipped machines, or print one.", statuses=(BROKEN,)),
-    Command("keys", "The keys of the machine file, or one of them in full."),
-    Command("units", "The units of every kind of quantity."),
-    Command("schema", "JSON Schema of the machine file, or of the JSON output."),
-    Command("skill", "What to know before first use, on one page."),
+    Command(
+        "check",
+        "Read and check a machine file and its limits.",
+        statuses=(BROKEN, NO_SOLUTION),
+        example="kurbel check engine.yaml --set limits.c_max='3 m/s'",
+    ),
+    Command(
+        "example",
+        "List the shipped machines, or print one.",
+        statuses=(BROKEN,),
+        example="kurbel example waterworks > engine.yaml",
+    ),
+    Command(
+        "keys",
+        "The keys of the machine file, or one of them in full.",
+        example="kurbel keys flywheel",
+    ),
+    Command(
+        "units",
+        "The units of every kind of quantity.",
+        example="kurbel units pressure",
+    ),
+    Command(
+        "schema",
+        "JSON Schema of the machine file, or of the JSON output.",
+        example="kurbel schema > kurbel.schema.json",
+    ),
+    Command(
+        "skill",
+        "What to know before first use, on one page.",
+        example="kurbel skill > SKILL.md",
+    ),
 )
 COMMANDS = {row.word: row for row in _ROWS}
 """By its word, in the order in which `kurbel --help` lists them."""

@@ -82,6 +82,9 @@ class SampledCylinder:
         drive, pieces = self.drive, self.drive.pieces
         state = _state_on(drive, pieces)
         if drive.has_force:
+            if drive.links:
+                pieces, state = _cut(drive, pieces, state, _ring_pressures_of_links)
+                pieces, state = _cut(drive, pieces, state, _senses_of_links)
             if some(drive.ring_surface != 0):
                 pieces, state = _cut(drive, pieces, state, _ring_pressure)
             if drive.rubs or drive.yoke_rubs:
@@ -151,6 +154,8 @@ def _halved(
 ) -> tuple[Pieces, State, Samples]:
     """Return the pieces, halved until these columns are polynomials, with the state and the columns on them."""
     judged = _known(pieces, columns(state))
+    if not judged:
+        return pieces, state, []
 
     def sample(halves: Pieces) -> list[Array]:
         if halves is pieces:
@@ -170,6 +175,8 @@ def _cut(
 ) -> tuple[Pieces, State]:
     """Return the pieces cut where one of these columns changes sign, and the state on them."""
     pieces, state, values = _halved(drive, pieces, state, columns)
+    if not len(values):
+        return pieces, state
     zeros = [pieces.zeros(value) for value in values]
     machine = np.concatenate([angles.machine for angles in zeros])
     degrees = np.concatenate([angles.degrees for angles in zeros])
@@ -217,6 +224,17 @@ def _loads_of_pins(state: State) -> list[Number]:
 def _ring_pressure(state: State) -> list[Number]:
     """Return the difference of pressures that presses the rings against the wall."""
     return [state.pressure_difference]
+
+
+def _ring_pressures_of_links(state: State) -> list[Number]:
+    """Return the differences of pressures that press the rings of the links of a master rod."""
+    links = [link for link in state.links if some(link.drive.ring_surface != 0)]
+    return [link.pressure_difference for link in links]
+
+
+def _senses_of_links(state: State) -> list[Number]:
+    """Return the forces whose signs decide which sides of the guides of links are loaded, where these rub."""
+    return [link.guide_sign for link in state.links if link.drive.rubs]
 
 
 def _sense_without_pins(state: State) -> list[Number]:

@@ -206,6 +206,13 @@ class Drive:
                 links.append(Drive(self.machine, cylinder, self.count, self.index))
         return tuple(links)
 
+    def lag_of(self, link: Drive) -> Number:
+        """Return the degrees by which the crank angle of a link lags that of this master: Γ, and turns of its firing."""
+        between = cast("LinkedPiston", link.mechanism).between
+        turns = np.round((link.lag - self.lag - between) / 360.0)
+        lag: Number = between + 360.0 * turns
+        return lag
+
     @property
     def pieces(self) -> Pieces:
         """The cycle between the angles at which something bends or jumps: dead centres and the corners of cards."""
@@ -220,8 +227,7 @@ class Drive:
         for link in self.links:
             ends = link.pieces.ends
             owners = np.repeat(np.arange(count), len(ends) // count)
-            between = cast("LinkedPiston", link.mechanism).between
-            bends.append(Angles(owners, np.mod(ends + between, self.cycle)))
+            bends.append(Angles(owners, np.mod(ends + self.lag_of(link), self.cycle)))
         machine = np.concatenate([angles.machine for angles in bends])
         degrees = np.concatenate([angles.degrees for angles in bends])
         nodes = 16

@@ -446,13 +446,20 @@ class State(Chambers):
         return self._moment_of_links
 
     @cached_property
+    def links(self) -> list[State]:
+        """The states of the cylinders whose link rods are on this master rod, at the same angles of the shaft."""
+        states = []
+        for link in self.drive.links:
+            lag = self.drive.lag_of(link)
+            states.append(State(link, CrankAngle.of(self.phi - lag), self.within - lag))
+        return states
+
+    @cached_property
     def _moment_of_links(self) -> Number:
         """Moment ΣM_K in N m of the link rods on this master rod."""
         moments: Number = 0.0
-        for link in self.drive.links:
-            between = cast("LinkedPiston", link.mechanism).between
-            state = State(link, CrankAngle.of(self.phi - between), self.within - between)
-            moment = state.knuckle_moment
+        for link in self.links:
+            moment = link.knuckle_moment
             if moment is not None:
                 moments = moments + moment
         return moments

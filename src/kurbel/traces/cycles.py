@@ -297,6 +297,8 @@ _SAME_ANGLE = 1e-3
 """Share of a step by which equal angles of two laps may differ through rounding."""
 _LEAST_ALIKE = 0.2
 """Correlation of laps below which they are not repetitions, even if a wrong speed shifts them."""
+_MOST_UNLIKE = 0.25
+"""Mean squared difference of two laps, over the variance, up to which they may be repetitions in spite of row numbers."""
 _REST = 0.05
 """Share of a lap above which a note reports that the incomplete last lap is left out."""
 
@@ -328,9 +330,9 @@ def _lay_over_one_lap(recording: Recording) -> None:
     laid = laid_over_one(angles, recording.values, bounds, lap)
     if not laid.has_equal_angles:
         recording.step = step
-    if not begins_anew:
-        _refuse_unlike_laps(recording, laid.values)
     end = int(bounds[-1])
+    if not begins_anew:
+        _refuse_unlike_laps(recording, laid.values, recording.values[0, end : end + int(counts[0])])
     if len(angles) - end > _REST * counts[0]:
         recording.notes.append(
             f"the {len(angles) - end} samples after lap {laps} of {lap:g} deg are left out"
@@ -400,12 +402,19 @@ def cut(laps: Laps, parts: int) -> Laps:
     )
 
 
-def _refuse_unlike_laps(recording: Recording, values: Array) -> None:
-    """Raise RuleError where an angle counts on over laps (m, n) that are not alike, each and the next but one."""
-    if len(values) <= 2:
-        return
+def _refuse_unlike_laps(recording: Recording, values: Array, rest: Array) -> None:
+    """Raise RuleError where an angle counts on over laps (m, n) that are not alike, each and the next but one.
+
+    rest (r,): samples after them, which of two laps go on as the first, where the angles may number rows.
+    """
     swing = values - values.mean()
-    is_alike = not (swing[2:] * swing[:-2]).mean() < _LEAST_ALIKE * (swing**2).mean()
+    variance = (swing**2).mean()
+    if len(values) > 2:
+        is_alike = not (swing[2:] * swing[:-2]).mean() < _LEAST_ALIKE * variance
+    elif len(rest) > _REST * values.shape[1] and _number_rows(recording.angles):
+        is_alike = ((rest - values[0, : len(rest)]) ** 2).mean() < _MOST_UNLIKE * variance
+    else:
+        return
     if is_alike:
         return
     message = (
@@ -503,7 +512,7 @@ def _closed(recording: Recording) -> Laps:
     is_line = _level_lines(recording, np.diff(angles))
     step = max(usual_step(np.diff(angles)[~is_line]), recording.step)
     if missing > 1.5 * step:
-        recording.refuse_hole(-1, angles[-1], end, _unit_advice(span))
+        recording.refuse_hole(-1, angles[-1], end, _unit_advice(angles))
 
     completed = missing > 1e-9 * period
     if completed:
@@ -522,14 +531,25 @@ def _closed(recording: Recording) -> Laps:
     return Laps(angles, values, tuple(notes), completed)
 
 
-def _unit_advice(span: float) -> str:
-    """Return which unit angles over so many degrees may really have, or ''."""
+def _unit_advice(angles: Array) -> str:
+    """Return which unit angles (n,) may really have, or what they may number, or ''."""
+    span = float(np.ptp(angles))
     radians_missed = min(abs(span - 2 * math.pi), abs(span / 2 - 2 * math.pi))
     if radians_missed < 0.2:
         return "; are these radians? Then write 'angle_unit: rad'"
     if span < 10:
         return "; are these times? Then write 'angle_unit: s' and 'recorded_speed: 1500 rpm', say"
+    if _number_rows(angles):
+        return (
+            "; do these number the samples? Then write how far apart they are, such as "
+            f"'angle_step: {720 / len(angles):.4g} deg' for one cycle of 720 deg"
+        )
     return ""
+
+
+def _number_rows(angles: Array) -> bool:
+    """Return whether angles (n,) are whole numbers one after the other, as those of rows."""
+    return bool((np.diff(angles) == 1).all())
 
 
 def _refuse_large_holes(recording: Recording, angles: Array) -> None:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from kurbel.traces.checks.doubt import LEAST_SWING, Doubt, sense_key
-from kurbel.traces.checks.lines import STRANGE, shift_by_lines
+from kurbel.traces.checks.lines import STRANGE, dead_centre_error, shift_by_lines
 from kurbel.traces.reading import MOTORED, PUMP, STEAM, TraceReading, in_bar
 
 # the place of the peak of an engine
@@ -36,7 +36,7 @@ def _usual_range(reading: TraceReading) -> tuple[float, float]:
 def backward(reading: TraceReading) -> Doubt | None:
     """A peak just before the dead centre, and work that is taken, are those of an angle in the other sense."""
     peak_at = reading.peak_at
-    is_early = -60.0 < peak_at < -_MOTORED_LEAD - reading.step
+    is_early = -60.0 < peak_at < -_MOTORED_LEAD - reading.step / 2
     if not reading.is_engine or not is_early or reading.kind == MOTORED:
         return None
     first, last = _usual_range(reading)
@@ -186,11 +186,15 @@ def flanks_elsewhere(reading: TraceReading) -> Doubt | None:
     error = 0.0
     if shift is not None:
         later = _from_half_turn(-shift.value)
-        error = abs(reading.put_later(later + shift.error).p_i - reading.put_later(later).p_i)
-    quarter = 90.0 * round(later / 90.0)
-    if quarter and abs(later - quarter) <= _QUARTER:
-        later = quarter
-        error = 0.0
+        sure = dead_centre_error(reading, shift)
+        error = abs(reading.put_later(later + sure).p_i - reading.put_later(later).p_i)
+    # quarter turns are likelier, be they near what the lines show or near what the flanks do
+    for shown in (later, off):
+        quarter = 90.0 * round(shown / 90.0)
+        if quarter and abs(shown - quarter) <= _QUARTER:
+            later = quarter
+            error = 0.0
+            break
     cured = reading.put_later(later)
     other_end = _or_other_end(reading, later)
     return Doubt(

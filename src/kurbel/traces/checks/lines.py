@@ -7,7 +7,7 @@ import numpy as np
 
 from kurbel.traces.checks.doubt import Doubt, sense_key
 from kurbel.traces.correct import Exponent
-from kurbel.traces.lines import Best, best_clearance, least
+from kurbel.traces.lines import Best, Chamber, best_clearance, least
 from kurbel.traces.reading import COMPRESSOR, ENGINES, FIRED, MOTORED, TraceReading, in_bar
 
 STRANGE = 8.0
@@ -29,6 +29,15 @@ def shift_by_lines(reading: TraceReading, most: float = 45.0) -> Best | None:
 
     shift = least(misfit, np.arange(-most, most + 1.0, 3.0).tolist())
     return shift if shift.misfit <= STRANGE else None
+
+
+_DEVIATIONS = 2.0
+"""Standard deviations of a dead centre by both lines that are reported."""
+
+
+def dead_centre_error(reading: TraceReading, shift: Best) -> float:
+    """Return how many degrees a dead centre by both lines may be off: by what gases differ in, and by half a step."""
+    return math.hypot(_DEVIATIONS * shift.error, reading.step / 2)
 
 
 _FIRED_PEAK = -3.0, 25.0
@@ -91,6 +100,39 @@ def _is_sensible(line: Exponent | None) -> bool:
     return _SENSIBLE[0] - slack <= line.value <= _SENSIBLE[1] + slack
 
 
+class Looks(NamedTuple):
+    """How both lines look: their misfit, whether that is strange, they are parted too far, and their exponents usual."""
+
+    misfit: float
+    is_strange: bool
+    are_parted: bool
+    is_sensible: bool
+
+    @property
+    def are_of_gas(self) -> bool:
+        """Whether nothing is wrong with them."""
+        return not self.is_strange and not self.are_parted and self.is_sensible
+
+
+def _looks_of(
+    reading: TraceReading, chamber: Chamber, clearance: float, later: float
+) -> Looks | None:
+    """Return how both lines would look if the trace were so many degrees later; None without them."""
+    lines = chamber.lines(clearance, later)
+    if lines is None:
+        return None
+    misfit = chamber.misfit(reading.gas, clearance, later) + peak_misfit(reading, later)
+    error = 2 * math.hypot(lines.compression.error, lines.expansion.error)
+    most = _APART_FIRED if reading.kind == FIRED else _APART
+    is_beyond = not -_APART - error <= lines.apart <= most + error
+    return Looks(
+        misfit=misfit,
+        is_strange=misfit > STRANGE,
+        are_parted=reading.kind in ENGINES and is_beyond,
+        is_sensible=reading.kind == COMPRESSOR or _is_sensible(lines.compression),
+    )
+
+
 def lines_of_no_gas(reading: TraceReading) -> Doubt | None:
     """Judge both lines: a dead centre, a clearance or a level that is wrong makes them none of a gas.
 
@@ -104,16 +146,19 @@ def lines_of_no_gas(reading: TraceReading) -> Doubt | None:
         return _no_line(reading)
     if reading.kind in ENGINES and not reading.is_engine:
         return None
-    misfit = chamber.misfit(reading.gas, clearance) + peak_misfit(reading, 0.0)
-    is_strange = misfit > STRANGE
-    error = 2 * math.hypot(lines.compression.error, lines.expansion.error)
-    most = _APART_FIRED if reading.kind == FIRED else _APART
-    is_beyond = not -_APART - error <= lines.apart <= most + error
-    are_parted = reading.kind in ENGINES and is_beyond
-    is_sensible = reading.kind == COMPRESSOR or _is_sensible(lines.compression)
-    if not is_strange and not are_parted and is_sensible:
+    looks = _looks_of(reading, chamber, clearance, 0.0)
+    if looks is None or looks.are_of_gas:
         return None
+    # samples so far apart show the dead centre to half a step at best
+    for later in (-reading.step / 2, reading.step / 2):
+        moved_looks = _looks_of(reading, chamber, clearance, later)
+        if moved_looks is not None and moved_looks.are_of_gas:
+            return None
 
+    misfit = looks.misfit
+    is_strange = looks.is_strange
+    are_parted = looks.are_parted
+    is_sensible = looks.is_sensible
     seen = (
         f"its compression goes by p V^{lines.compression.value:.3g} and its expansion by "
         f"p V^{lines.expansion.value:.3g}"
@@ -179,49 +224,76 @@ def _cures_of_lines(reading: TraceReading) -> list[Cure]:
     clearance = reading.trace.clearance
     if chamber is None or not clearance:
         return []
-    gas = reading.gas
-    cures = []
+    cures = [
+        _with_reference(reading, chamber, clearance),
+        _with_other_sense(reading, clearance),
+        _with_dead_centre(reading),
+        _with_clearance(reading, chamber, clearance),
+    ]
+    return [cure for cure in cures if cure]
 
-    # gauge and absolute
+
+def _misfit_about(
+    reading: TraceReading, chamber: Chamber, clearance: float, raised: float = 0.0
+) -> float:
+    """Return the least misfit where the dead centre is or half a step beside it, raised by Pa."""
+    misfits = []
+    for later in (0.0, -reading.step / 2, reading.step / 2):
+        misfit = chamber.misfit(reading.gas, clearance, later, raised)
+        misfits.append(misfit + peak_misfit(reading, later))
+    return min(misfits)
+
+
+def _with_reference(reading: TraceReading, chamber: Chamber, clearance: float) -> Cure:
+    """Return the cure of gauge pressures called absolute, or the other way round."""
     ambient = reading.setting.ambient
     is_absolute = reading.setting.absolute
     raised = ambient if is_absolute else -ambient
     reference = "gauge" if is_absolute else "absolute"
-    misfit = chamber.misfit(gas, clearance, raised=raised) + peak_misfit(reading, 0.0)
+    misfit = _misfit_about(reading, chamber, clearance, raised)
     if reading.kind in ENGINES:
         low = reading.low + reading.setting.lift
         misfit += _level_misfit(low + raised, ambient) - _level_misfit(low, ambient)
-    cures.append(Cure(misfit, f"write 'pressures: {reference}'", reading.with_reference()))
+    return Cure(misfit, f"write 'pressures: {reference}'", reading.with_reference())
 
-    # the sense of the angle
-    if reading.kind == FIRED and reading.p_i < 0:
-        turned = reading.turned()
-        if turned.worked is not None and turned.p_i > 0:
-            misfit = turned.worked.misfit(gas, clearance) + peak_misfit(turned, 0.0)
-            text = f"does its angle count against the rotation? write '{sense_key(reading)}'"
-            cures.append(Cure(misfit, text, turned))
 
-    # the dead centre, which never makes a fired engine take work
+def _with_other_sense(reading: TraceReading, clearance: float) -> Cure | None:
+    """Return the cure of an angle against the rotation; None of what does work as it is."""
+    if reading.kind != FIRED or reading.p_i >= 0:
+        return None
+    turned = reading.turned()
+    if turned.worked is None or turned.p_i <= 0:
+        return None
+    misfit = _misfit_about(turned, turned.worked, clearance)
+    text = f"does its angle count against the rotation? write '{sense_key(reading)}'"
+    return Cure(misfit, text, turned)
+
+
+def _with_dead_centre(reading: TraceReading) -> Cure | None:
+    """Return the cure of a wrong dead centre, which never makes a fired engine take work."""
     shift = shift_by_lines(reading, _LATEST)
-    if shift is not None:
-        later = round(-shift.value, 1)
-        moved = reading.put_later(later)
-        error = abs(reading.put_later(later + shift.error).p_i - moved.p_i)
-        spoils = reading.kind == FIRED and reading.p_i > 0 > moved.p_i
-        if not spoils:
-            text = (
-                f"a dead centre {abs(later):.2g} deg off does that; "
-                f"write {reading.zero_later(later)}"
-            )
-            cures.append(Cure(shift.misfit + _FREE, text, moved, error))
+    if shift is None:
+        return None
+    later = round(-shift.value, 1)
+    moved = reading.put_later(later)
+    if reading.kind == FIRED and reading.p_i > 0 > moved.p_i:
+        return None
+    sure = dead_centre_error(reading, shift)
+    error = abs(reading.put_later(later + sure).p_i - moved.p_i)
+    text = (
+        f"a dead centre {abs(later):.2g} ± {sure:.2g} deg off does that; "
+        f"write {reading.zero_later(later)}"
+    )
+    return Cure(shift.misfit + _FREE, text, moved, error)
 
-    # the clearance
-    best = best_clearance(chamber, gas)
+
+def _with_clearance(reading: TraceReading, chamber: Chamber, clearance: float) -> Cure:
+    """Return the cure of a wrong clearance."""
+    best = best_clearance(chamber, reading.gas)
     likely = math.exp(best.value)
-    text = f"write 'compression_ratio: {1 + 1 / likely:.3g}'"
+    key = f"compression_ratio: {1 + 1 / likely:.3g}"
     if reading.kind == COMPRESSOR:
-        text = f"write 'clearance: {likely:.3g}'"
+        key = f"clearance: {likely:.3g}"
     misfit = best.misfit + _FREE_CLEARANCE + peak_misfit(reading, 0.0)
-    text = f"{text} instead of the clearance of {clearance:.3g}"
-    cures.append(Cure(misfit, text, reading.with_clearance(likely)))
-    return cures
+    text = f"write '{key}' instead of the clearance of {clearance:.3g}"
+    return Cure(misfit, text, reading.with_clearance(likely))
