@@ -306,6 +306,7 @@ class Cylinder(Record):
         yield from _of_events(self)
         yield from _of_strokes(self)
         yield from _of_displacements(self)
+        yield from _of_measured_strokes(self)
         at_point = (
             [rule.below("point") for rule in self.point.rules_on(self.mechanism)]
             if self.point
@@ -496,6 +497,49 @@ def _of_displacements(cylinder: Cylinder) -> Iterator[Rule]:
         path = ("tandem", number - 1) if number else ()
         stroke = cylinder.mechanism.stroke * np.abs(piston.lever_ratio)
         yield from (rule.below(*path) for rule in piston.displacement_rules(stroke))
+
+
+_SAME_STROKE = 0.03
+"""Relative difference of the range of a measured volume from the volume that a piston sweeps."""
+
+
+def _of_measured_strokes(cylinder: Cylinder) -> Iterator[Rule]:
+    """A trace over volumes or displacements runs over those that its piston sweeps."""
+    for number, piston in enumerate(cylinder.pistons):
+        path = ("tandem", number - 1, "indicator") if number else ("indicator",)
+        areas = {"head_end": piston.head_area, "crank_end": piston.crank_area}
+        chambers = piston.chambers
+        if chambers.get("crank_end") is chambers.get("head_end"):  # mirrored
+            chambers.pop("crank_end", None)
+        for end, chamber in chambers.items():
+            strokes = chamber.strokes if chamber.traced else None
+            if strokes is None:
+                continue
+            swept = cylinder.mechanism.stroke * np.abs(piston.lever_ratio)
+            if strokes.kind == "volume":
+                swept = swept * areas[end]
+            ratio = strokes.swept / swept
+            form = "volume" if strokes.kind == "volume" else "length"
+            cause = "bore, rod or stroke" if form == "volume" else "stroke"
+            is_unit = (ratio > _OTHER_UNIT) | (ratio * _OTHER_UNIT < 1)
+            advice = f"is '{strokes.kind}_unit' right?"
+            message = (
+                f"the {strokes.kind}s run over {{run:{form}}}, the piston sweeps {{swept:{form}}}: "
+            )
+            numbers = {
+                "run": strokes.swept,
+                "swept": swept,
+                "percent": np.round(100 * (ratio - 1), 1),
+            }
+            place = (*path, end, "trace", f"{strokes.kind}_unit")
+            yield Rule(place, is_unit, message + advice, numbers)
+            is_different = np.abs(ratio - 1) > _SAME_STROKE
+            message += f"{{percent}} %; correct {cause}, or cut the file"
+            yield Rule(place, is_different & ~np.asarray(is_unit), message, numbers)
+
+
+_OTHER_UNIT = 2.0
+"""Ratio of two volumes from which on one has another unit."""
 
 
 def _of_events(cylinder: Cylinder) -> Iterator[Rule]:

@@ -213,7 +213,7 @@ def _of_mapping(form: RecordForm, definitions: Schema) -> Schema:
     describe(form, properties, rules, definitions)
     schema = _mapping(properties) | _demands(form)
     if rules:
-        schema["allOf"] = rules
+        schema["allOf"] = [*schema.get("allOf", []), *rules]
     return schema
 
 
@@ -273,10 +273,15 @@ def _describe_variant(
 
 def _demands(form: RecordForm) -> Schema:
     """Return the schema of the keys that must be given."""
+    demands: Schema = {}
     names = required(form.keys, form.keys)
-    if not names:
-        return {}
-    return {"required": names}
+    if names:
+        demands["required"] = names
+    # of a key and one that is compared with it one at least
+    compared = [(name, key.instead) for name, key in form.keys.items() if key.compared]
+    if compared:
+        demands["allOf"] = [{"anyOf": [{"required": [key]} for key in pair]} for pair in compared]
+    return demands
 
 
 def _none_of(groups: list[list[str]]) -> Schema:
