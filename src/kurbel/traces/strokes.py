@@ -8,7 +8,7 @@ has these fractions of the stroke.
 import itertools
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,7 +30,7 @@ _LEAST_TURN = 300.0
 
 
 class StrokeRows(NamedTuple):
-    """Rows (n,) in the order of time: fractions of the stroke, angles in degrees that count on, and of which row each is."""
+    """Rows (n,) in the order of time: angles in degrees that count on, and of which row of the file each is."""
 
     angles: Array
     rows: Indices
@@ -96,7 +96,7 @@ def _angles_of(fractions: Array, kind: str, refuse_row: Callable[[int, str], Non
     # the strokes between them, each in the order of its volume
     bounds = [0, *centres, len(fractions)]
     angles: list[Array] = []
-    rows: list[Array] = []
+    rows: list[Indices] = []
     turn = 0.0
     grows = not is_low[0]
     for begin, end in itertools.pairwise(bounds):
@@ -104,9 +104,9 @@ def _angles_of(fractions: Array, kind: str, refuse_row: Callable[[int, str], Non
         upward = inside if grows else 1 - inside
         back = np.maximum.accumulate(upward) - upward
         if back.size and back.max() > _BACK:
+            size = f"{100 * back.max():.2g} % of the stroke"
             message = (
-                f"the {kind} goes back by {100 * back.max():.2g} % of the stroke within a stroke; "
-                "put the rows in the order of time"
+                f"the {kind} goes back by {size} within a stroke; put the rows in the order of time"
             )
             refuse_row(begin + int(np.argmax(back)), message)
         by_volume = np.argsort(upward, kind="stable")
@@ -116,9 +116,9 @@ def _angles_of(fractions: Array, kind: str, refuse_row: Callable[[int, str], Non
         rows.append(by_volume + begin)
         turn += 180.0
         grows = not grows
-    counted = np.concatenate(angles)
-    begins_at = 0.0 if not is_low[0] else 180.0
-    counted = counted + begins_at
+    # before a smallest volume the rows are those of a stroke from 180° on
+    begins_at = 180.0 if is_low[0] else 0.0
+    counted = np.concatenate(angles) + begins_at
     order = np.concatenate(rows)
 
     # of more than two rows at one place the first and the last
@@ -222,10 +222,10 @@ def _at_equal_angles(
     Fractions z of the file are a + b z(φ₀ + k Δφ): a, b and φ₀ by least squares, since no row need be at a dead centre.
     """
     count = len(angles) - 1
-    steps = np.arange(count + 1) * (360.0 / count)
+    steps: Array = np.asarray(np.arange(count + 1) * (360.0 / count), dtype=float)
     mechanism = setting.mechanism
 
-    def fraction_at(degrees: Array) -> Array:
+    def fraction_at(degrees: Any) -> Any:
         if strokes.kind == "volume":
             return setting.stroke_fraction(degrees - setting.own_dead_centre)
         return setting._replace(head_end=True).stroke_fraction(
@@ -243,4 +243,6 @@ def _at_equal_angles(
         rest = fractions - columns @ np.array([begin, span, shift])
         first += float(shift / span)
     is_equal = bool(np.abs(rest).max() <= _SAME) and abs(first - angles[0]) < 360
-    return (first + steps, float(begin), float(span)) if is_equal else None
+    if not is_equal:
+        return None
+    return np.asarray(first + steps, dtype=float), float(begin), float(span)
