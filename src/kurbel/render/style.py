@@ -83,7 +83,8 @@ figure{margin:1.2rem 0}
 figure svg{width:100%;min-width:30rem;height:auto;display:block}
 #summary figure svg{min-width:0}
 .unprinted{display:none}
-@media print{main{padding:0}figure{margin:.5rem 0}figure svg{min-width:0;max-height:8.5cm}
+@media print{main{padding:0}figure{margin:.5rem 0}figure svg{min-width:0;max-height:7.1cm}
+figure svg.tall{max-height:8.8cm}
 #summary{border:0;padding:0}#summary figure svg{max-height:6cm}
 .facts{grid-template-columns:repeat(6,1fr);gap:.3rem;margin:.4rem 0}.facts p{padding:.2rem .5rem;line-height:1.2}.facts b{font-size:1.1rem}
 .facts small{font-size:.7rem}
@@ -94,10 +95,12 @@ h1{font-size:18pt}h2{margin:.8rem 0 .4rem}h3{margin-top:.8rem}
 a{color:inherit;text-decoration:none}}
 """
 PAIRS = """\
-@media screen{main{max-width:96rem}.pair{display:grid;grid-template-columns:1fr 1fr;gap:1.6rem}.pair>*{min-width:0}}
-@media screen and (max-width:66rem){.pair{grid-template-columns:1fr}}@media print{.pair{break-inside:avoid}}
+.pair{display:grid;grid-template-columns:1fr 1fr;gap:1.6rem}.pair>*{min-width:0}
+@media screen{main{max-width:96rem}}
+@media screen and (max-width:66rem){.pair{grid-template-columns:1fr}}
+@media print{.pair{gap:.7cm;clear:both}}
 """
-"""Of pictures of two machines side by side."""
+"""Of pictures of two machines side by side, which are printed on sheets that lie."""
 
 PICTURE = """\
 text{font-family:system-ui,"DejaVu Sans",sans-serif;font-size:10px}.h{font-size:13px;font-weight:600}

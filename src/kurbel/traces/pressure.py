@@ -21,6 +21,7 @@ from kurbel.traces.correct import (
     noise_of,
     work_weights,
 )
+from kurbel.traces.period import wandered
 
 if TYPE_CHECKING:
     from kurbel.traces.heat import Released
@@ -42,8 +43,8 @@ class TracePressure:
     by_stroke: ClassVar[Literal[False]] = False
 
     def __init__(self, trace: Trace, setting: Setting) -> None:
-        self.trace, self.setting = trace.over(setting.cycle), setting
-        self.angles = self.trace.angles + trace.shift(setting)
+        self.trace, self.setting = trace.in_chamber(setting), setting
+        self.angles = self.trace.angles + self.trace.shift(setting)
         self.each = corrected(self.trace, setting)
         self.pressures = np.asarray(self.each.mean(axis=0))
         self._p, widths = self.pressures - setting.base, np.diff(self.angles)
@@ -77,6 +78,11 @@ class TracePressure:
         return Extreme(
             float(best), float(within_cycle(self.angles[self._p == best], self.setting.cycle).min())
         )
+
+    @cached_property
+    def wanders(self) -> bool:
+        """Whether its cycles wander against each other, so that they cannot be compared."""
+        return bool(wandered(self.trace.angles, self.trace.period, self.each))
 
     # the rise of pressure
 
