@@ -529,9 +529,11 @@ def _of_measured_range(strokes: Strokes, swept: float, path: Path) -> Iterator[R
     ratio = strokes.swept / swept
     is_unit = max(ratio, 1 / ratio) > _OTHER_UNIT
     is_different = not is_unit and abs(ratio - 1) > _SAME_STROKE
-    form, cause = ("volume", "bore, rod or stroke")
+    form = "volume"
+    cause = "bore, rod or stroke"
     if strokes.kind == "displacement":
-        form, cause = ("length", "stroke")
+        form = "length"
+        cause = "stroke"
     message = f"the {strokes.kind}s run over {{run:{form}}}, the piston sweeps {{swept:{form}}}: "
     numbers = {"run": strokes.swept, "swept": swept}
     place = (*path, f"{strokes.kind}_unit")
