@@ -13,6 +13,7 @@ import pytest
 
 from indicated import Engine, absolute, fraction
 from kurbel.errors import MachineFileError
+from kurbel.machine.one_cycle import of_cycle
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
@@ -88,6 +89,7 @@ def test_a_double_acting_compressor(tmp_path: Path) -> None:
         assert value(forces, line) == pytest.approx(1.4, abs=2e-5)
     work = STROKE * (AREA * p_i(0.158) + CRANK_AREA * p_i(0.1839))
     assert value(forces, "work") == pytest.approx(work, rel=2e-5)
+    assert value(forces, "V_clearance") == pytest.approx(0.158 * AREA * STROKE, rel=1e-6)
     (gas,) = forces.drive.gas
     assert gas.head.trace.clearance == pytest.approx(0.158, rel=1e-6)
     assert gas.crank.trace.clearance == pytest.approx(0.1839, rel=1e-6)
@@ -117,6 +119,25 @@ def test_several_cycles_and_rows_against_the_time(tmp_path: Path) -> None:
     forces = Case(loads(compressor(trace(tmp_path, columns, keys)))).cylinders[0]
     assert value(forces, "cycles_measured") == 3
     assert value(forces, "mean_pressure") == pytest.approx(p_i(0.158), rel=1e-4)
+    second = Case(of_cycle(loads(compressor(trace(tmp_path, columns, keys))), 2)).cylinders[0]
+    assert value(second, "mean_pressure") == pytest.approx(p_i(0.158), rel=1e-4)
+
+
+def test_volumes_from_zero_with_a_clearance(tmp_path: Path) -> None:
+    """What the piston displaces alone: the clearance of the machine file counts."""
+    volumes, pressures = head_end(360)
+    columns = (volumes - volumes.min(), pressures)
+    keys = "volume_unit: m3, clearance: 0.158"
+    forces = Case(loads(compressor(trace(tmp_path, columns, keys)))).cylinders[0]
+    assert value(forces, "n_compression") == pytest.approx(1.4, abs=1e-3)
+    assert value(forces, "V_clearance") == pytest.approx(0.158 * AREA * STROKE, rel=1e-12)
+
+
+def test_the_same_card_at_both_ends(tmp_path: Path) -> None:
+    """A mirrored crank end has the pressure of the head end over its own volume."""
+    text = compressor(trace(tmp_path, head_end()), "mirrored")
+    work = STROKE * (AREA + CRANK_AREA) * p_i(0.158)
+    assert value(Case(loads(text)).cylinders[0], "work") == pytest.approx(work, rel=2e-5)
 
 
 def test_displacements_of_both_ends(tmp_path: Path) -> None:
@@ -188,6 +209,11 @@ GOOD = head_end(360)
         ((GOOD[0] * 0 + 1, GOOD[1]), "volume_unit: m3", "the volume is the same in all rows"),
         (GOOD, "volume_unit: m3, angle_zero: 5 deg", "follow from the order of the rows; leave"),
         (GOOD, "volume_unit: m3, pressure_column: 1", "column 1 is that of the angles"),
+        (
+            GOOD,
+            "volume_unit: m3, clearance: 0.0158",
+            "the smallest volume is 0.158 of the stroke volume, the clearance 0.0158; leave 'clea",
+        ),
         (GOOD, "displacement_unit: m", "the displacements run over 157.686 mm, the piston sweeps"),
     ],
 )

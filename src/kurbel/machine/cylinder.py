@@ -31,6 +31,7 @@ from kurbel.declared.record import (
     field,
     first_of,
 )
+from kurbel.errors import Path
 from kurbel.machine.parts import (
     ConnectingRod,
     Friction,
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from kurbel.machine.link_rod import LinkRod
     from kurbel.machine.load import Force
     from kurbel.machine.valve import Valve
+    from kurbel.traces.correct import Strokes
 
 MOST_TURNS = 100
 """Turns of the shaft after which everything repeats, at most."""
@@ -512,32 +514,53 @@ def _of_measured_strokes(cylinder: Cylinder) -> Iterator[Rule]:
         if chambers.get("crank_end") is chambers.get("head_end"):  # mirrored
             chambers.pop("crank_end", None)
         for end, chamber in chambers.items():
-            strokes = chamber.strokes if chamber.traced else None
-            if strokes is None:
+            if not chamber.traced or chamber.strokes is None:
                 continue
             swept = cylinder.mechanism.stroke * np.abs(piston.lever_ratio)
-            if strokes.kind == "volume":
+            if chamber.strokes.kind == "volume":
                 swept = swept * areas[end]
-            ratio = strokes.swept / swept
-            form = "volume" if strokes.kind == "volume" else "length"
-            cause = "bore, rod or stroke" if form == "volume" else "stroke"
-            is_unit = (ratio > _OTHER_UNIT) | (ratio * _OTHER_UNIT < 1)
-            advice = f"is '{strokes.kind}_unit' right?"
-            message = (
-                f"the {strokes.kind}s run over {{run:{form}}}, the piston sweeps {{swept:{form}}}: "
-            )
-            numbers = {
-                "run": strokes.swept,
-                "swept": swept,
-                "percent": np.round(100 * (ratio - 1), 1),
-            }
-            place = (*path, end, "trace", f"{strokes.kind}_unit")
-            yield Rule(place, is_unit, message + advice, numbers)
-            is_different = np.abs(ratio - 1) > _SAME_STROKE
-            message += f"{{percent}} %; correct {cause}, or cut the file"
-            yield Rule(place, is_different & ~np.asarray(is_unit), message, numbers)
+            place = (*path, end, "trace")
+            yield from _of_measured_range(chamber.strokes, swept, place)
+            yield from _of_measured_clearance(chamber.strokes, chamber.clearance, place)
 
 
+def _of_measured_range(strokes: Strokes, swept: float, path: Path) -> Iterator[Rule]:
+    """Yield that the range of a measured volume or displacement is not what the piston sweeps, in m³ or m."""
+    ratio = strokes.swept / swept
+    is_unit = max(ratio, 1 / ratio) > _OTHER_UNIT
+    is_different = not is_unit and abs(ratio - 1) > _SAME_STROKE
+    form = "volume"
+    cause = "bore, rod or stroke"
+    if strokes.kind == "displacement":
+        form = "length"
+        cause = "stroke"
+    message = f"the {strokes.kind}s run over {{run:{form}}}, the piston sweeps {{swept:{form}}}: "
+    numbers = {"run": strokes.swept, "swept": swept}
+    place = (*path, f"{strokes.kind}_unit")
+    yield Rule(place, is_unit, f"{message}is '{strokes.kind}_unit' right?", numbers)
+    percent = round(100 * (ratio - 1), 1)
+    message = f"{message}{percent:g} %; correct {cause}, or cut the file"
+    yield Rule(place, is_different, message, numbers)
+
+
+def _of_measured_clearance(strokes: Strokes, clearance: float | None, path: Path) -> Iterator[Rule]:
+    """Yield that a clearance is another one than that of the smallest volume; 0 in volumes that are displaced alone."""
+    if clearance is None or strokes.kind != "volume":
+        return
+    measured = strokes.smallest / strokes.swept
+    has_clearance = measured > _LEAST_MEASURED
+    is_different = has_clearance and abs(measured / clearance - 1) > _SAME_CLEARANCE
+    message = (
+        f"the smallest volume is {measured:.4g} of the stroke volume, the clearance {clearance:.4g}; "
+        "leave 'clearance' out, or correct it"
+    )
+    yield Rule((*path, "volume_column"), is_different, message)
+
+
+_LEAST_MEASURED = 0.002
+"""Smallest over swept volume below which a file has the displaced volume alone."""
+_SAME_CLEARANCE = 0.03
+"""Relative difference of two clearances through rounding."""
 _OTHER_UNIT = 2.0
 """Ratio of two volumes from which on one has another unit."""
 

@@ -76,9 +76,7 @@ def strokes_of_file(
         lambda row: Fault(("file",), table.line(int(rows[row]))),
         most_turns=1,
     )
-    note = f"the crank angles follow from the {kind}s"
-    strokes = Strokes(kind, swept, smallest)
-    return laps._replace(notes=(*laps.notes, note)), strokes
+    return laps, Strokes(kind, swept, smallest)
 
 
 def _angles_of(fractions: Array, kind: str, refuse_row: Callable[[int, str], None]) -> StrokeRows:
@@ -198,7 +196,7 @@ def placed(trace: Trace, setting: Setting) -> Trace:
 
 
 def _crank_angles(setting: Setting, strokes: Strokes, nominal: Array, fractions: Array) -> Array:
-    """Return the crank angles (n,) in degrees that rise over one turn, by nominal angles and fractions of the stroke."""
+    """Return the crank angles (n,) in degrees that rise over whole turns, by nominal angles and fractions of the stroke."""
     mechanism = setting.mechanism
     turn = np.floor(nominal / 360)
     grows = nominal - 360 * turn < 180
@@ -210,7 +208,7 @@ def _crank_angles(setting: Setting, strokes: Strokes, nominal: Array, fractions:
     if shrinks_outward:
         angles = np.where(grows, inward, outward + 360)
     angles = np.maximum.accumulate(angles + 360 * turn)
-    angles[-1] = angles[0] + 360
+    angles[-1] = angles[0] + round(nominal[-1] - nominal[0])
     return np.minimum(angles, angles[-1])
 
 
@@ -222,7 +220,9 @@ def _at_equal_angles(
     Fractions z of the file are a + b z(φ₀ + k Δφ): a, b and φ₀ by least squares, since no row need be at a dead centre.
     """
     count = len(angles) - 1
-    steps: Array = np.asarray(np.arange(count + 1) * (360.0 / count), dtype=float)
+    steps: Array = np.asarray(
+        np.arange(count + 1) * (round(angles[-1] - angles[0]) / count), dtype=float
+    )
     mechanism = setting.mechanism
 
     def fraction_at(degrees: Any) -> Any:
