@@ -108,7 +108,8 @@ class Liquid(Record):
         rise = np.maximum(back.pressures[0] - outward.pressures[0], 0.0)
         lost: Any = rise / self.bulk_modulus
         c = 0.0 if card.clearance is None else card.clearance
-        rest = np.maximum(1 - lost, np.finfo(float).tiny)
+        # if it is compressed over the whole stroke, neither valve opens: z_s = 1
+        rest = np.maximum(np.maximum(1 - lost, c * lost), np.finfo(float).tiny)
         return c * lost / rest, 1 - (1 + c) * lost
 
     def compressed(self, piston: Piston) -> Piston:
@@ -245,5 +246,9 @@ class Pump(Record):
                     "and nothing is delivered"
                 )
                 numbers = {"K": self.liquid.bulk_modulus, "name": piston.name}
+                clearance = getattr(card, "clearance", None)
+                if clearance is not None:
+                    message = f"{message}; the clearance is {{c}} times the stroke volume"
+                    numbers["c"] = clearance
                 path = ("pump", "liquid", "bulk_modulus")
                 yield Rule(path, fractions[1] <= 0, message, numbers)

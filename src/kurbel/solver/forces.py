@@ -497,14 +497,16 @@ class CylinderForces(SampledCylinder, Results):
     def no_compressor(self) -> bool:
         """Whether rod loads are not shown: those of API 618 are of compressors, and at a connecting rod.
 
-        An engine may be motored, and a pump and a ram are driven, too.
+        An engine may be motored, and a pump and a ram are driven, too; with another load on the rod the gas and the
+        masses are not all that it carries.
         """
         if self.work is None or self.work >= 0:
             return True
         drive = self.drive
         if drive.revolutions > 1 or not self.mechanism.has_rod:
             return True
-        if drive.machine.pump is not None or drive.cylinder.ram_force is not None:
+        loads = (drive.cylinder.ram_force, drive.cylinder.force)
+        if drive.machine.pump is not None or any(load is not None for load in loads):
             return True
         return not any(gas.work < 0 and gas.compresses_gas for gas in drive.gas)
 
