@@ -19,7 +19,7 @@ from kurbel.numerics.arithmetic import total
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
-    from kurbel.machine.pumped import Gas
+    from kurbel.machine.drawn_gas import Gas
 
 
 class ConnectingRod(Record):
@@ -410,7 +410,7 @@ class RodPoint(Record):
 
 
 def _gas() -> type[Gas]:
-    from kurbel.machine.pumped import Gas
+    from kurbel.machine.drawn_gas import Gas
 
     return Gas
 
