@@ -28,7 +28,10 @@ ENGINE = {
 
 def doubts(**changed: str) -> list[str]:
     """All warnings on the engine with these keys changed."""
-    text = "\n".join(f"{key}: {value}" for key, value in (ENGINE | changed).items())
+    lines = ENGINE | changed
+    if "rod_ratio" in changed.get("stroke", ""):
+        del lines["rod"]
+    text = "\n".join(f"{key}: {value}" for key, value in lines.items())
     return [note.text for note in machine_notes(Case(loads(text)))]
 
 
@@ -58,6 +61,8 @@ def doubts(**changed: str) -> list[str]:
             "a clearance of 15.8 times the stroke volume leaves no compression",
         ),
         ("brake_power", "50 W", "% of the indicated power"),
+        ("efficiency", "0.009", "an efficiency of 0.009 is that of no machine that runs"),
+        ("stroke", "30 m\nrod_ratio: 4", "a stroke of 30 m is beyond anything built"),
         ("bore", "6 m", "a bore of 6000 mm is beyond anything built"),
     ],
 )

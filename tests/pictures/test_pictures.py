@@ -1,6 +1,7 @@
 """Pictures are as exact as the tables: every point is the solver's, extremes stand where the key value does."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -380,6 +381,9 @@ def test_the_rod_load_is_gas_and_inertia_within_its_limits() -> None:
     assert len(reversals) == 2
     assert np.interp(reversals, curves["P_G"].x, curves["P_G"].y) == pytest.approx(0, abs=0.02)
     assert "API 618: 15°, 3 %" in panel.title
+    in_terminal = "".join(plain_lines(braille(picture, Look(comma=True, width=120))))
+    (over,) = re.findall(r"reverses over ([\d.]+)°", panel.title)
+    assert f"reverses over {over.replace('.', ',')}°" in in_terminal
 
 
 def test_rod_loads_are_drawn_of_compressors_alone() -> None:

@@ -298,3 +298,14 @@ def test_results_are_shown_in_a_line() -> None:
     for shown in (*drawing.pictures, case, case.flywheel, case.bearings, case.cylinders[0].at([0])):
         assert len(repr(shown)) < 120
         assert " object at 0x" not in repr(shown)
+
+
+def test_what_a_notebook_shows_of_a_machine_and_of_a_slip() -> None:
+    """A text is not a path, a file of a picture no option, and a machine is shown without its file."""
+    with pytest.raises(kurbel.KurbelError, match=r"crank: 1 m rod: 5 m: .* read by kurbel.loads"):
+        kurbel.load("crank: 1 m\nrod: 5 m")
+    machine = kurbel.load(CONFIGS["waterworks"])
+    assert f"origin=Origin('{WATERWORKS}')" in repr(machine)
+    drawing = kurbel.draw(kurbel.solve(machine), "card")
+    with pytest.raises(kurbel.KurbelError, match=r"^card.bmp: the name of a picture ends in"):
+        drawing.save("card.bmp")

@@ -12,6 +12,7 @@ from indicated import Engine, absolute, columns_file, cycles, fraction, indicate
 from kurbel.machine_file import loads
 from kurbel.mechanisms.setting import Setting
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.notes.left_out import forces_left_out
 from kurbel.notes.warnings import machine_notes
 from kurbel.solver.case import Case
 from kurbel.traces.checks import CHECKS, doubts
@@ -419,3 +420,19 @@ def test_a_coarse_trace_against_the_rotation(tmp_path: Path) -> None:
     file = written(tmp_path, angles, absolute(ENGINE, -angles))
     for keys in ("", ", compression_ratio: 15"):
         assert "'angle_sense: against'" in notes_of(machine_text(file, keys))[0]
+
+
+def test_cycles_that_wander_have_no_scatter_of_p_i(tmp_path: Path) -> None:
+    """Fifteen equal cycles, each 1° later than the one before: what p_i scatters by is the encoder's."""
+    angles = np.arange(0.0, 720.0, 1.0)
+    columns = np.stack([absolute(ENGINE, angles - number) for number in range(15)])
+    text = machine_text(written(tmp_path, angles, columns.T), ", pressure_columns: 2-16")
+    case = Case(loads(text))
+    assert any("the cycles wander 14 deg later" in note.text for note in machine_notes(case))
+    forces = case.cylinders[0]
+    assert forces["cycles_measured"].value == 15
+    key_values = forces.rows.key_values
+    for id in ("mean_pressure_cov", "mean_pressure_std", "cycle_worst"):
+        assert key_values[id].of(forces) is None
+    reasons = [left_out.why for left_out in forces_left_out(case.machine, forces)]
+    assert "the measured cycles wander against each other" in reasons

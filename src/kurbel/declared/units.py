@@ -83,7 +83,7 @@ KINDS = {
     "speed": Kind(
         1e-9,
         1e6,
-        "rps, rpm, 1/s, 1/min, U/min, rev/min, r/min, min-1, s-1, Hz, rad/s",
+        "rps, rpm, 1/s, 1/min, U/min, rev/min, r/min, U/s, rev/s, r/s, min-1, s-1, Hz, rad/s",
         "rps",
         "rpm",
         "rpm",
@@ -738,6 +738,14 @@ def listed_units(kind: str) -> tuple[str, ...]:
 
 _SPOKEN = (
     (r"\b(cu|cubic) ?(ft|in)\b", r"\g<2>3"),
+    (
+        r"\b(upm|umin|u\.?p\.?m\.?|r\.p\.m\.?|rpms|(turns|revs?|revolutions|rotations)( per |/)min(ute)?)$",
+        "rpm",
+    ),
+    (r"\b(turns|revs|revolutions|rotations)( per |/)s(econd)?$", "rev/s"),
+    (r"^1?/min(ute)?$", "1/min"),
+    (r"^1?/s(econd)?$", "1/s"),
+    (r"\bhertz\b", "Hz"),
     (r"\b(barrels?|bbls)\b", "bbl"),
     (r"\bpounds?\b", "lb"),
     (r"\b(lbf?|kg|in|ft|mm|cm)s\b", r"\1"),
@@ -759,9 +767,6 @@ def unit_hint(name: str, kind: str) -> str:
         )
     if kind == "spring":
         return "; it is height over pressure: a spring of 60 lb per inch is '1/60 in/psi'"
-    number = NUMBER.match(name)
-    if number:
-        return f"; write the unit alone, without {number.group()}"
     gallons = re.fullmatch(r"(gal|gallons?|gpm)(/.*)?", name)
     if gallons:
         unit = gallons[1] if gallons[1] == "gpm" else "gal"
@@ -788,6 +793,11 @@ def unit_hint(name: str, kind: str) -> str:
     for unit in units:
         if unit.lower() == written_name.lower():
             return f"; did you mean '{unit}'?"
+    number = NUMBER.match(name)
+    if number:
+        return f"; write the unit alone, without {number.group()}"
+    if kind == "speed" and name == "min":
+        return "; did you mean '1/min'?"
     # a unit of another kind
     for other in kinds():
         names = unit_names(other)

@@ -238,6 +238,7 @@ class Machine(Record):
         FIRING_ORDER,
         "Order in which the cylinders fire, at equal intervals over the cycle; sets `crank_position`",
         absent="positions as given",
+        also=("firing", "ignition_order", "zuendfolge"),
     )
     flywheel: Flywheel | None = field(_flywheel, "Flywheel", absent="no speed line")
     load: Load | None = field(

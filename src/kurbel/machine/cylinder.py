@@ -67,8 +67,12 @@ _PIN_OFFSET = (
     "the angle between the two halves of a split crank pin is 'throw_angle'; a piston pin beside the middle of its "
     "piston is an 'offset', a length, negative toward the thrust side"
 )
+_SEVERAL = "equal cylinders are written 'cylinders: {count: 4, firing_order: 1-3-4-2, each: {…}}'"
+_MASSES = "masses are written 'masses: {piston: 1.2 kg, connecting_rod: 1.5 kg}'"
 _NO_KEYS = {
     "pin_offset": _PIN_OFFSET,
+    **dict.fromkeys(("number_of_cylinders", "cylinder_count"), _SEVERAL),
+    **dict.fromkeys(("piston_mass", "conrod_mass", "rod_mass", "reciprocating_mass"), _MASSES),
     **dict.fromkeys(("spring", "spring_rate", "spring_stiffness"), _SPRING),
 }
 """Word for what a cylinder may have, but no key describes -> what to write instead."""

@@ -26,6 +26,10 @@ class Origin(NamedTuple):
     case: str = ""
     varied: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        """Return it without its text, which would hide the machine that it is of."""
+        return f"Origin({self.name!r})"
+
     def set_over(self, overrides: Iterable[str]) -> "Origin":
         """Return it with these values set over it, too."""
         return self._replace(overrides=(*self.overrides, *overrides))

@@ -422,7 +422,11 @@ class Piston(Record):
     """
 
     bore: float = field(
-        "length", "Diameter of the cylinder", "d", above=0, also=("bohrung", "cylinder_diameter")
+        "length",
+        "Diameter of the cylinder",
+        "d",
+        above=0,
+        also=("bohrung", "cylinder_diameter", "piston_diameter", "bore_diameter"),
     )
     head_end_rod: float = field(
         "length", "Diameter of the rod through the head end", default=0.0, least=0

@@ -23,6 +23,7 @@ class EqualCylinders(Record):
         FIRING_ORDER,
         "Order in which they fire, at equal intervals over the cycle",
         absent="that of the machine; if every bank has one cylinder, all share one crank pin",
+        also=("firing", "ignition_order", "zuendfolge"),
     )
     crank_positions: tuple[float, ...] | None = field(
         ["angle"],

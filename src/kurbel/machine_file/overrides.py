@@ -27,6 +27,10 @@ _FIGURE = re.compile(rf"\s*(limits|expect)\s*\.(.+?)(?:[.[]({_NUMBER})]?)?\s*", 
 """A limit or an expectation, whose key value may have a prefix; or one of its two bounds."""
 
 
+_ALONE = {"connecting_rod": "mass"}
+"""Keys whose value may be a number alone -> the key that it has in a mapping."""
+
+
 class Override(NamedTuple):
     """One value that replaces that of the file: its text, for messages, its path, and the value.
 
@@ -190,6 +194,8 @@ def _step(node: Node, override: Override, depth: int) -> Node:
     key = str(path[depth])
     if is_last:
         node[key] = override.value
+    elif key in _ALONE and isinstance(node.get(key), str) and not is_nothing(node[key]):
+        node[key] = {_ALONE[key]: node[key]}
     elif is_nothing(node.get(key, Plain())):
         is_list_needed = isinstance(path[depth + 1], int)
         if is_list_needed:

@@ -5,6 +5,7 @@ import re
 import sys
 
 from kurbel.declared.numerals import SPACES
+from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import Fault, MachineFileError, UnreadableFileError
 from kurbel.machine.origin import Origin, yaml_lines
 from kurbel.shipped import shipped
@@ -31,7 +32,8 @@ def read(path: str | os.PathLike[str]) -> Origin:
             return decode(name, file.read(SIZE_LIMIT + 1), os.path.dirname(name))
     except FileNotFoundError:
         hint = _hint_without_file(name)
-        message = f"{name or 'the empty name'}: there is no such file; {hint}"
+        shown = text_in_one_line(name) if "\n" in name else name
+        message = f"{shown or 'the empty name'}: there is no such file; {hint}"
     except IsADirectoryError:
         message = f"{name} is a folder; name the machine file in it"
     except PermissionError:
@@ -51,6 +53,8 @@ def _hint_without_file(name: str) -> str:
         for ending in (".yaml", ".yml"):
             if os.path.isfile(f"{name}{ending}"):
                 return f"did you mean '{name}{ending}'?"
+    if "\n" in name:
+        return "the text of a machine is read by kurbel.loads"
     return "'kurbel example' lists machines to start from"
 
 

@@ -30,7 +30,14 @@ _INFINITE = {"infinite": math.inf}
 
 def crank_field() -> FieldValue:
     """Return the field of the crank radius of a mechanism that can be given by its stroke."""
-    return field("length", "Crank radius; or give `stroke`", "R", above=0, example="400 mm")
+    return field(
+        "length",
+        "Crank radius; or give `stroke`",
+        "R",
+        above=0,
+        example="400 mm",
+        also=("crank_radius", "crank_throw", "kurbelradius"),
+    )
 
 
 def stroke_instead(gives: Callable[[ValuesByKey], dict[str, object]]) -> Key:
@@ -43,6 +50,7 @@ def stroke_instead(gives: Callable[[ValuesByKey], dict[str, object]]) -> Key:
         instead="crank",
         gives=gives,
         key="stroke",
+        also=("stroke_length", "hub", "kolbenhub"),
     )
 
 
@@ -170,7 +178,15 @@ class SliderCrank(Mechanism):
         "L",
         above=0,
         words=_INFINITE,
-        also=("con_rod", "conrod", "connecting_rod", "rod_length", "pleuel", "schubstange"),
+        also=(
+            "con_rod",
+            "conrod",
+            "connecting_rod",
+            "rod_length",
+            "conrod_length",
+            "pleuel",
+            "schubstange",
+        ),
     )
     _rod_ratio = alternative(
         "ratio",

@@ -135,6 +135,9 @@ def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOu
     yield from left_out(machine, cylinder)
     if forces.friction_work is not None and not forces.work_driving:
         yield LeftOut("friction loss as a share", "no piston drives")
+    gas = forces.drive.own_gas
+    if gas and gas.wanders:
+        yield LeftOut("scatter of p_i", "the measured cycles wander against each other")
     has_no_crosshead = cylinder.masses and cylinder.masses.crosshead is None
     if has_no_crosshead and not forces.no_compressor:
         yield LeftOut("load on the piston rod", "no mass of the crosshead given")

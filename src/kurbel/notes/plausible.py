@@ -172,6 +172,10 @@ def _speed(machine: Machine) -> Iterator[PlausibleFigure]:
         yield PlausibleFigure(machine.speed)
 
 
+def _efficiency(machine: Machine) -> Iterator[PlausibleFigure]:
+    yield PlausibleFigure(machine.efficiency)
+
+
 def _ambient(machine: Machine) -> Iterator[PlausibleFigure]:
     yield PlausibleFigure(machine.ambient)
 
@@ -179,6 +183,7 @@ def _ambient(machine: Machine) -> Iterator[PlausibleFigure]:
 OF_MACHINES = (
     # model racing engines stay below 700 rps
     Bounds("a speed", "speed", _speed, 0.0, 1000.0, "is beyond anything built"),
+    Bounds("an efficiency", "ratio", _efficiency, 0.2, 1.0, "is that of no machine that runs"),
     # the highest places where engines run have 0.5 bar, caissons some 4 bar
     Bounds(
         "an ambient pressure", "pressure", _ambient, 0.2e5, 10e5, "is none in which engines run"

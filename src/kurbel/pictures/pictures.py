@@ -310,7 +310,7 @@ def _reversal_text(loads: RodLoads) -> str:
         return "never reverses"
     least_angle, least_ratio = LEAST_REVERSAL
     return (
-        f"reverses over {angle:.4g}° to {100 * ratio:.3g} % "
+        f"reverses over {angle:.4g}°, to {100 * ratio:.3g} % of the larger load "
         f"(API 618: {least_angle:g}°, {100 * least_ratio:g} %)"
     )
 

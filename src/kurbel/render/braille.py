@@ -9,7 +9,16 @@ import numpy as np
 from kurbel.arrays import ComplexArray
 from kurbel.pictures.picture import Panel, Picture
 from kurbel.render import Look
-from kurbel.render.picture import Medium, PanelFrame, axis_text, dense, legend_text, looks_of, ticks
+from kurbel.render.picture import (
+    Medium,
+    PanelFrame,
+    axis_text,
+    dense,
+    legend_text,
+    looks_of,
+    panel_title,
+    ticks,
+)
 from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, paragraph, width
 
 # lengths in columns; a row is as high as two columns are wide
@@ -112,7 +121,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     if not panel.plain:
         _write_axes(canvas, frame, rows, up)
 
-    above = [look.text(panel.title)]
+    above = [panel_title(panel, look)]
     if not panel.plain:
         above.append(axis_text(panel.y, look))
     lines = [curve for curve in panel.curves if curve.kind == "line" and curve.name.words]

@@ -45,18 +45,18 @@ _DOTS_PER_INCH = 192.0
 def check_file(file_name: str, option: str = "--output", poster: bool = False) -> str:
     """Return svg, png or pdf; raises UsageError where none can be drawn to this file, before anything is computed.
 
-    poster: as a sheet of paper, for which svg needs typst, too.
+    option: that names the file, "" in Python; poster: as a sheet of paper, for which svg needs typst, too.
     """
+    named = f"{option} {file_name}".strip()
     kind = os.path.splitext(file_name)[1].lower()[1:]
     if kind not in ("svg", "png", "pdf"):
-        raise UsageError(f"{option} {file_name}: the name of a picture ends in .svg, .png or .pdf")
+        raise UsageError(f"{named}: the name of a picture ends in .svg, .png or .pdf")
     needs_typst = kind != "svg" or poster
     if needs_typst and importlib.util.find_spec("typst") is None:
         what = "poster" if poster else kind
         remedy = "" if poster else "; svg needs no package"
         raise UsageError(
-            f"{option} {file_name}: a {what} needs typst, which is not installed: "
-            f"pip install typst{remedy}"
+            f"{named}: a {what} needs typst, which is not installed: pip install typst{remedy}"
         )
     return kind
 
@@ -85,7 +85,7 @@ def draw_file(pictures: Sequence[Picture], look: Look, file_name: str, paper: st
 
     Raises UsageError where it cannot be written.
     """
-    kind = check_file(file_name)
+    kind = check_file(file_name, "")
     if paper not in (*PAPERS, FIT):
         raise UsageError(f"paper '{paper}': there are {', '.join(PAPERS)}, {FIT}")
     if kind == "pdf" and paper != FIT:

@@ -61,6 +61,11 @@ def figure_text(figure: PageFigure, look: Look) -> str:
     return f"{text}, {at}"
 
 
+def panel_title(panel: Panel, look: Look) -> str:
+    """Return the title of a panel, its numbers as they are wanted."""
+    return look.fine(look.text(panel.title))
+
+
 def picture_text(picture: Picture, look: Look) -> str:
     """Return a picture in words: what it shows, and every figure in it."""
     figures = []

@@ -83,7 +83,8 @@ figure{margin:1.2rem 0}
 figure svg{width:100%;min-width:30rem;height:auto;display:block}
 #summary figure svg{min-width:0}
 .unprinted{display:none}
-@media print{main{padding:0}figure{margin:.5rem 0}figure svg{min-width:0;max-height:8.5cm}
+@media print{main{padding:0}figure{margin:.5rem 0}figure svg{min-width:0;max-height:7.1cm}
+figure svg.tall{max-height:8.8cm}
 #summary{border:0;padding:0}#summary figure svg{max-height:6cm}
 .facts{grid-template-columns:repeat(6,1fr);gap:.3rem;margin:.4rem 0}.facts p{padding:.2rem .5rem;line-height:1.2}.facts b{font-size:1.1rem}
 .facts small{font-size:.7rem}

@@ -16,6 +16,7 @@ from kurbel.render.picture import (
     axis_text,
     legend_text,
     looks_of,
+    panel_title,
     picture_text,
     symbol,
     ticks,
@@ -32,6 +33,8 @@ _MARGIN = 8.0
 """Around the pictures of a file."""
 _TALL, _SHORT = 250.0, 170.0
 """Height of a panel among at most two and of one among several."""
+_TALL_ROW = 340.0
+"""Height of a row of panels from which on it takes more room in print than others."""
 _GUTTER = 14.0
 """Between panels that are next to each other."""
 _BOLD = 8.3
@@ -76,7 +79,8 @@ def svg_rows(picture: Picture, look: Look) -> Iterator[str]:
     height = panel_height(picture)
     for row in picture.rows:
         tall, items = _drawn(row, look, False, height, headed=False)
-        yield _svg(items, WIDTH, tall, 1.0, picture_text(row, look))
+        look_of_row = "s tall" if tall > _TALL_ROW else "s"
+        yield _svg(items, WIDTH, tall, 1.0, picture_text(row, look), name=look_of_row)
 
 
 def sheet_svg(picture: Picture, look: Look, height: float, medium: Medium) -> tuple[float, str]:
@@ -96,8 +100,16 @@ def poster_svg(panel: Panel, look: Look, wide: bool) -> str:
     return _svg(items, room, tall, 6.0, panel.title, picture_css(paper=True))
 
 
-def _svg(items: str, wide: float, tall: float, margin: float, title: str, style: str = "") -> str:
-    """Return an element with its title; style: of a file of its own."""
+def _svg(
+    items: str,
+    wide: float,
+    tall: float,
+    margin: float,
+    title: str,
+    style: str = "",
+    name: str = "s",
+) -> str:
+    """Return an element with its title; style: of a file of its own; name: of its class."""
     box = f"{-margin:g} {-margin:g} {wide + 2 * margin:g} {tall + 2 * margin:g}"
     if style:
         size = f'width="{wide + 2 * margin:g}" height="{tall + 2 * margin:g}"'
@@ -105,7 +117,7 @@ def _svg(items: str, wide: float, tall: float, margin: float, title: str, style:
         items = f"<style>{style}</style>\n{items}"
     else:
         head = "<svg"
-    return f'{head} class="s" viewBox="{box}" role="img">\n<title>{escape(title)}</title>\n{items}</svg>\n'
+    return f'{head} class="{name}" viewBox="{box}" role="img">\n<title>{escape(title)}</title>\n{items}</svg>\n'
 
 
 def panel_height(picture: Picture) -> float:
@@ -211,7 +223,7 @@ def _panel(
 
     # curves, and forces, which alone move
     moving = ""
-    resting = _text(-5j, look.text(panel.title), "note") if panel.plain else ""
+    resting = _text(-5j, panel_title(panel, look), "note") if panel.plain else ""
     for curve, number in zip(panel.curves, looks_of(panel)):
         is_at_rest = curve.x.ndim == 1 or paper
         if is_at_rest:
@@ -343,7 +355,7 @@ def _legend(frame: PanelFrame, left: float) -> list[LegendRow]:
     """Return what is above a panel: its title, what runs upward, and of several curves each with its stroke."""
     panel, look = frame.panel, frame.look
     texts: list[tuple[str, int | None]] = [
-        (look.text(panel.title), None),
+        (panel_title(panel, look), None),
         (axis_text(panel.y, look), None),
     ]
     lines = [pair for pair in zip(panel.curves, looks_of(panel)) if pair[0].kind == "line"]

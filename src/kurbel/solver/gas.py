@@ -512,6 +512,11 @@ class PistonGas:
         return None
 
     @property
+    def wanders(self) -> bool:
+        """Whether measured cycles at one of its ends wander against each other."""
+        return any(end.wanders for end, _ in self._traces if end.traced)
+
+    @property
     def noise(self) -> float:
         """Standard deviation in N of the noise that traces bring into the force."""
         return math.hypot(*(end.noise * area for end, area in self._traces))

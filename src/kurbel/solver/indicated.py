@@ -152,14 +152,17 @@ class Indicated(Results):
         p_i, highest, at, _ = self.cycles
         mean, deviation = abs(float(p_i.mean())), float(p_i.std(ddof=1))
         top = int(np.argmax(highest))
+        # of cycles that wander each p_i is that of another dead centre
+        is_comparable = not self.gas.wanders
+        has_cov = is_comparable and mean > 0
         return {
             "cycles_measured": len(highest),
-            "mean_pressure_std": deviation,
-            "mean_pressure_cov": deviation / mean if mean else None,
+            "mean_pressure_std": deviation if is_comparable else None,
+            "mean_pressure_cov": deviation / mean if has_cov else None,
             "p_max_mean": float(highest.mean()),
             "p_max_std": float(highest.std(ddof=1)),
             "p_max_most": Extreme(float(highest[top]), float(at[top])),
-            "cycle_worst": int(np.argmin(p_i)) + 1,
+            "cycle_worst": int(np.argmin(p_i)) + 1 if is_comparable else None,
         }
 
     def _share(self, pressure: TracePressure) -> float:

@@ -141,7 +141,7 @@ class WiebePressure:
         card = self.card
         centres = np.full(len(self._machines), _CENTRE)
         burnt = self._result(card.burnt(centres - _CENTRE, self.expansion))
-        integral = self._result(self._pieces.at(self._integral, self._machines, centres))
+        integral = self._result(self._integral_at(centres, self._machines))
         pressure = self._compression.pressure_at(self._heat, card.clearance, burnt, integral)
         return Stroke(card.expansion_exponent, pressure, card.clearance, burnt, integral)
 
@@ -149,10 +149,14 @@ class WiebePressure:
         self, z: Array, after: Array, expands: Flags, integral: Array, machine: Indices | None
     ) -> Array:
         """Return the absolute pressure in Pa while the valves are closed, at degrees after the dead centre."""
+        # where the stroke began
         begins = []
-        for at_compression, at_expansion in zip(self._compression, self._expansion):
-            numbers = spread(at_expansion, machine), spread(at_compression, machine)
-            begins.append(np.where(expands, *numbers))
+        for of_compression, of_expansion in zip(self._compression, self._expansion):
+            compressing = spread(of_compression, machine)
+            expanding = spread(of_expansion, machine)
+            begins.append(np.where(expands, expanding, compressing))
+
+        # what has burnt since
         card, _ = self._of(machine)
         burnt = card.burnt(after, spread(self.expansion, machine))
         heat = spread(self._heat, machine)
@@ -190,14 +194,12 @@ class WiebePressure:
         after = np.where(compresses, since - cycle, since) + (degrees - within)
 
         # the integral K, by the polynomials of its pieces
-        z = z if self.setting.head_end else 1 - z
-        numbers = 0 if machine is None else machine
-        places = np.broadcast_to(numbers, after.shape).ravel()
-        closed_angles = np.clip(after, *self._closed_range(machine))
-        integral = self._pieces.at(self._integral, places, (_CENTRE + closed_angles).ravel())
-        absolute = self._closed(
-            z, closed_angles, ~compresses, integral.reshape(after.shape), machine
-        )
+        fraction = z if self.setting.head_end else 1 - z
+        expansion = spread(self.expansion, machine)
+        closed = np.clip(after, expansion - 360.0, expansion)
+        owners = np.broadcast_to(0 if machine is None else machine, after.shape)
+        integral = self._integral_at(_CENTRE + closed, owners)
+        absolute = self._closed(fraction, closed, ~compresses, integral, machine)
 
         # exhaust and intake
         if cycle == 720.0:
@@ -206,10 +208,10 @@ class WiebePressure:
             absolute = np.where(stroke == 2, card.intake + setting.lift, absolute)
         return np.asarray(self._lowered(absolute, machine))
 
-    def _closed_range(self, machine: Indices | None) -> tuple[Any, Any]:
-        """Return the degrees after the dead centre between which the valves are closed."""
-        expansion = spread(self.expansion, machine)
-        return expansion - 360.0, expansion
+    def _integral_at(self, degrees: Array, machine: Indices) -> Array:
+        """Return the integral K at angles of the pieces of these machines, of any shape."""
+        integral = self._pieces.at(self._integral, machine.ravel(), degrees.ravel())
+        return integral.reshape(degrees.shape)
 
     @cached_property
     def _over_closed_strokes(self) -> tuple[Pieces, Array, Array]:
@@ -218,9 +220,9 @@ class WiebePressure:
         def sample(pieces: Pieces) -> list[Array]:
             _, z, slope, after = self._at_nodes(pieces)
             expands = pieces.middle > _CENTRE
-            places = np.broadcast_to(pieces.machine, after.shape).ravel()
-            integral = self._pieces.at(self._integral, places, pieces.degrees.ravel())
-            p = self._closed(z, after, expands, integral.reshape(after.shape), pieces.machine)
+            owners = np.broadcast_to(pieces.machine, after.shape)
+            integral = self._integral_at(pieces.degrees, owners)
+            p = self._closed(z, after, expands, integral, pieces.machine)
             inside = self._are_inside(pieces)
             return [np.where(inside, p, 0.0), np.where(inside, p * slope, 0.0)]
 
@@ -232,14 +234,18 @@ class WiebePressure:
         """The highest gauge pressure in Pa, and the first crank angle in degrees of the cycle that has it."""
         pieces, p, _ = self._over_closed_strokes
         extremes = pieces.extremes([p])
-        degrees = self.setting.own_dead_centre + extremes.largest_at[0] - _CENTRE
         pressure = self._lowered(extremes.largest[0], None)
-        top = Extreme(self._result(pressure), self._result(np.mod(degrees, self.setting.cycle)))
+        top = Extreme(self._result(pressure), self._crank_angle(extremes.largest_at[0]))
         if self.setting.cycle != 720.0:
             return top
         exhaust = self._lowered(self.card.back_pressure + self.setting.lift, None)
         begin = np.mod(self._dead_centres[1], self.setting.cycle)
         return largest(top, Extreme(self._result(exhaust), self._result(begin)))
+
+    def _crank_angle(self, degrees: Array) -> Any:
+        """Return the crank angle within the cycle of angles (machines,) of the pieces."""
+        angle = self.setting.own_dead_centre + degrees - _CENTRE
+        return self._result(np.mod(angle, self.setting.cycle))
 
     def _result(self, values: Any) -> Any:
         """Return a number of one machine as a float, and of many as (machines,)."""
@@ -281,17 +287,15 @@ class WiebePressure:
             after = pieces.middle - _CENTRE
             expansion = pieces.of(self.expansion)
             inside = (after > expansion - 360 + CHORD / 2) & (after < expansion - CHORD / 2)
-            own = pieces.of(self.setting.own_dead_centre)
-            degrees = pieces.degrees - _CENTRE + own
+            degrees = pieces.degrees - _CENTRE + pieces.of(self.setting.own_dead_centre)
             machine = np.broadcast_to(pieces.machine, degrees.shape).ravel()
             rises = self.rise(degrees.ravel(), machine).reshape(degrees.shape)
             return [np.where(inside, rises, 0.0)]
 
         fine, (rises,) = refined(pieces, sample)
         extremes = fine.extremes([rises])
-        degrees = self.setting.own_dead_centre + extremes.largest_at[0] - _CENTRE
         steepest = self._result(extremes.largest[0])
-        return Extreme(steepest, self._result(np.mod(degrees, self.setting.cycle)))
+        return Extreme(steepest, self._crank_angle(extremes.largest_at[0]))
 
     def released(self, area: Number) -> WiebeHeat:
         """Return the heat released over the piston."""

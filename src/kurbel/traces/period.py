@@ -188,6 +188,25 @@ def _least_near(differences: Array, lag: float, width: float) -> float | None:
     return best + (before - after) / (2 * bend)
 
 
+_WANDERED = 10.0
+"""Degrees by which the cycles of one engine never move from the first to the last."""
+
+
+def wandered(angles: Array, period: float, cycles: Array) -> float:
+    """Return by how many degrees cycles (m, n) are later from the first to the last; 0 where that is nothing.
+
+    By the phase of their first harmonic; angles (n,): in degrees, over a period.
+    """
+    if len(cycles) < 3:
+        return 0.0
+    wave = np.exp(-2j * np.pi * angles / period) * np.gradient(angles)
+    phases = np.unwrap(np.angle(cycles[:, :-1] @ wave[:-1]))
+    later = float(phases[0] - phases[-1]) * period / (2 * np.pi)
+    if abs(later) <= _WANDERED:
+        return 0.0
+    return later
+
+
 # pulses of a toothed wheel
 
 _HIGH = 0.5

@@ -21,6 +21,7 @@ from kurbel.traces.correct import (
     noise_of,
     work_weights,
 )
+from kurbel.traces.period import wandered
 
 if TYPE_CHECKING:
     from kurbel.traces.heat import Released
@@ -77,6 +78,11 @@ class TracePressure:
         return Extreme(
             float(best), float(within_cycle(self.angles[self._p == best], self.setting.cycle).min())
         )
+
+    @cached_property
+    def wanders(self) -> bool:
+        """Whether its cycles wander against each other, so that they cannot be compared."""
+        return bool(wandered(self.trace.angles, self.trace.period, self.each))
 
     # the rise of pressure
 

@@ -155,7 +155,7 @@ class RecordForm(Form):
             belongs = moved.get(name) or reading.where_it_belongs(name, path)
             meant = ""
             if name not in moved:
-                meant = synonyms.get(name) or near(name, tuple(keys))
+                meant = synonyms.get(name) or synonyms.get(name.lower()) or near(name, tuple(keys))
             if meant:
                 message = f"unknown key; did you mean '{meant}'?"
                 # a synonym of a key here may be the name of a key elsewhere

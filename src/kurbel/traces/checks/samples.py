@@ -5,14 +5,13 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.traces.checks.doubt import Doubt
 from kurbel.traces.correct import drift_of, joined_in_pairs, noise_of, without_drift
+from kurbel.traces.period import wandered
 from kurbel.traces.reading import ENGINES, TraceReading, in_bar
 
 _PAIRS_DIFFER = 0.5
 """Root mean square by which the turns of a pair differ, over that of their swing: one fires, the other does not."""
 _OVER_SCATTER = 4.0
 """The same over what turns scatter by."""
-_WANDERED = 10.0
-"""Degrees by which the cycles of one engine never move from the first to the last."""
 _TWICE = 0.25
 """Share of samples at the angle of the one before, from which on angles are rounded."""
 _RANGE = 0.06
@@ -91,23 +90,18 @@ def recorded_speed(reading: TraceReading) -> Doubt | None:
 
 def wandering_cycles(reading: TraceReading) -> Doubt | None:
     """Cycles of one engine do not wander against each other."""
-    laps = reading.each
     trace = reading.trace
-    if len(laps) < 3:
+    degrees = wandered(trace.angles, trace.period, reading.each)
+    if not degrees:
         return None
-    wave = np.exp(-2j * np.pi * trace.angles / trace.period) * np.gradient(trace.angles)
-    phases = np.unwrap(np.angle(laps[:, :-1] @ wave[:-1]))
-    wandered = float(phases[0] - phases[-1]) * trace.period / (2 * np.pi)
-    if abs(wandered) <= _WANDERED:
-        return None
-    side = "later" if wandered > 0 else "earlier"
+    side = "later" if degrees > 0 else "earlier"
     if trace.timed:
         return Doubt(
-            f"the cycles wander {abs(wandered):.3g} deg {side} from the first to the last: the "
+            f"the cycles wander {abs(degrees):.3g} deg {side} from the first to the last: the "
             "speed was not constant; record the angle"
         )
     return Doubt(
-        f"the cycles wander {abs(wandered):.3g} deg {side} from the first to the last: does the "
+        f"the cycles wander {abs(degrees):.3g} deg {side} from the first to the last: does the "
         "angle count the same in each of them? Check 'angle_step' and lost samples"
     )
 
