@@ -7,11 +7,11 @@ stroke line:
     P →  ───O───  ← S cos ψ     along it   S cos ψ = P − friction of crosshead, f |N|, and rings
             ↑ N   ← friction    across it  N = S sin ψ + G, from the lower guide, positive as drawn
 
-    N (cos ψ + f sin ψ sgn c sgn N) = P sin ψ + G cos ψ        D 3 with signs; f = 0: N = P tan ψ + G (R 301)
+    N (cos ψ + f sin ψ sgn c sgn N) = P sin ψ + G cos ψ        D 3, crosshead, with signs; f = 0: N = P tan ψ + G (R 301)
     S = P/cos ψ (R 300)   D = P cos(φ+ψ)/cos ψ (R 302)   T = P sin(φ+ψ)/cos ψ (R 303), by virtual work: T R dφ = P dx
 
-T is M/R throughout: where pins and journals rub, it lacks their moments of friction over R, the force at the pin, T_Z,
-does not.
+T = M/R always: where pins and journals rub, it is less the moments of friction over R. T_Z, the force at the pin, is
+not.
 
 The P of N is less the friction of the rings, that of S, D and T less all friction along the stroke line. The couple of
 an exact rod and the friction in the pins of a rod are balanced by side forces on guide and crank pin.
@@ -185,7 +185,7 @@ class State(Chambers):
         load = self.drive.load
         if load is None:
             return None
-        force = load.without_points(self.displacement, self.drive.index)
+        force = load.constant_and_spring(self.displacement, self.drive.index)
         if load.profile is not None:
             force = force + self.pressure(load.profile)
         return self.filled(force)
