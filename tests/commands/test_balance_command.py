@@ -76,6 +76,28 @@ cylinders:
 """
 
 
+V_OF_FIVE = """
+speed: 241.936 rpm
+cycle: four-stroke
+cylinders:
+  - {name: first, crank: 135.12 mm, rod: 303.133 mm, masses: {piston: 131.391 kg}}
+  - like: first
+  - {like: first, bank_angle: 90 deg}
+  - like: first
+  - like: first
+firing_order: 5-3-2-1-4
+"""
+
+
+def test_a_force_along_a_line_has_an_ellipse_without_width() -> None:
+    """Cranks every 144°: four pistons in line lack the fifth, whose crank is in the other line; what is left is a line."""
+    document = answer("balance", "-", "--orders", text=V_OF_FIVE)
+    tables = {table["id"]: table for table in document["machine_place_tables"]}
+    columns = {column["id"]: column["values"] for column in tables["ellipses"]["columns"]}
+    assert columns["F_long"][0] > 10_000
+    assert set(columns["F_short"]) == {0.0}
+
+
 def typed_back(text: str, units: str) -> str:
     """Return the file with the best weights as they are printed for people."""
     page = printed("balance", "-", "--units", units, "-f", "markdown", text=text)

@@ -93,6 +93,7 @@ def test_every_command_has_help_that_any_encoding_can_show(command: str) -> None
     assert result.exit_code == 0
     assert result.stdout.startswith(f"Usage: kurbel {command}")
     assert result.stdout.isascii()
+    assert max(map(len, result.stdout.splitlines())) <= 80
     # the first screen has an example, which can be read, and the options of most calls
     screen = "\n".join(result.stdout.splitlines()[:24])
     name, word, *words = shlex.split(COMMANDS[command].example.partition(" > ")[0])

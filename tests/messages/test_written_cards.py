@@ -1,11 +1,13 @@
 """Cards as people have them: one pressure, millimetres on paper, a planimeter, a mean pressure."""
 
 import math
+import re
 
 import pytest
 
 from command import run
 from kurbel import loads, solve
+from kurbel.errors import MachineFileError
 from kurbel.solver.forces import CylinderForces
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -68,6 +70,39 @@ def test_a_planimeter_gives_the_mean_pressure(planimeter: str) -> None:
     text = f"indicator: {{head_end: {{{PAPER}, {planimeter}}}}}\n"
     assert forces_of(text).mean_pressure == pytest.approx(2 * AT, rel=1e-13)
     assert "rectangular card" in check(text)
+
+
+def test_mid_ordinates_give_the_mean_pressure() -> None:
+    """Ten strips with heights of 18.7 mm on the mean; by a spring of 6 mm/at that is 3.1167 at."""
+    ordinates = "[22, 31, 30, 26, 21, 17, 14, 11, 9, 6]"
+    text = f"indicator: {{head_end: {{{PAPER}, ordinates: {ordinates}}}}}\n"
+    assert forces_of(text).mean_pressure == pytest.approx(18.7 / 6 * AT, rel=1e-13)
+    assert "rectangular card" in check(text)
+    in_inches = "drawn: {length: 4 in, spring: 0.02 in/psi}, ordinates: [0.9, 1.2, 0.8, -0.1]"
+    text = f"indicator: {{head_end: {{{in_inches}}}}}\n"
+    assert forces_of(text).mean_pressure == pytest.approx(35 * 6894.757293168, rel=1e-9)
+
+
+def test_ordinates_at_the_ends_of_a_card() -> None:
+    text = f"indicator: {{head_end: {{{PAPER}, ordinates: [0, 31, 30, 26, 0]}}}}\n"
+    assert "the first and the last ordinate are 0: are they at the ends" in check(text)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ("ordinates: [22, 131, 30]", "131 mm is more than the card is long (92 mm)"),
+        ("ordinates: [22, 31 mm, 30]", "expected a number, got '31 mm'; it has no unit, write 31"),
+        ("ordinates: [22, 31]", "2 numbers; from 3 to 1000 are taken"),
+        ("ordinates: 22", "expected a list of numbers, such as"),
+        ("ordinates: [22, 31, 30], area: 9 cm2", "'area' and 'ordinates' mean the same"),
+        ("ordinates: [22, 31, 30], mean_height: 9 mm", "'mean_height' and 'ordinates' mean the"),
+        ("ordinates: [22, 31, 30], expansion: [[0, 1], [92, 2]]", "leave out the ordinates"),
+    ],
+)
+def test_ordinates_that_cannot_be(keys: str, message: str) -> None:
+    with pytest.raises(MachineFileError, match=re.escape(message)):
+        forces_of(f"indicator: {{head_end: {{{PAPER}, {keys}}}}}\n")
 
 
 # no clearance, ratios

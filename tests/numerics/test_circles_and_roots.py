@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kurbel.numerics.enclosing import ClosedCurve, smallest_circle
-from kurbel.numerics.search import common_roots, lowest, roots
+from kurbel.numerics.search import bracketed_roots, common_roots, lowest, roots
 
 # circles
 
@@ -64,6 +64,58 @@ def test_the_farthest_point_of_a_curve_with_a_fine_wave() -> None:
     assert degrees[0] == pytest.approx(math.degrees(0.8) / 8, abs=1e-6)
 
 
+def test_the_farthest_angle_is_where_all_waves_are_in_line() -> None:
+    """1 + 0.3 e^{i(φ−α)} + 0.1 e^{3i(φ−α)} is 1.4 at α alone, of every α a little before 360°, too."""
+    for angle in (0.4, 91.3, 200.0, 348.7, 359.6):
+        turn = np.exp(-1j * np.radians(angle))
+        distance, degrees = curve(c=1.0, f1=0.3 * turn, f3=0.1 * turn**3).farthest()
+        assert distance[0] == pytest.approx(1.4, rel=1e-14)
+        assert degrees[0] == pytest.approx(angle, abs=1e-6)
+
+
+def test_at_the_farthest_point_the_distance_no_longer_rises() -> None:
+    draw = np.random.default_rng(5)
+    amplitudes = draw.normal(size=(17, 30)) + 1j * draw.normal(size=(17, 30))
+    amplitudes *= 0.5 ** np.abs(np.arange(-8, 9))[:, None]
+    of = ClosedCurve(amplitudes)
+    distance, degrees = of.farthest()
+    point, slope, _ = of.at(degrees, np.arange(30))
+    assert np.abs(point) == pytest.approx(distance, rel=1e-14)
+    rise = (point.conj() * slope).real
+    assert (np.abs(rise) < 1e-12 * distance**2).all()
+
+
+def test_of_two_summits_as_far_the_first_and_of_others_the_higher_one() -> None:
+    """An ellipse is farthest at α and α + 180°; a middle of ∓1e-7 makes one of them higher."""
+    for angle in np.linspace(1.0, 179.0, 37):
+        waves = {"f1": 1.0, "b1": 0.5 * np.exp(2j * np.radians(angle))}
+        _, degrees = curve(**waves).farthest()
+        assert degrees[0] == pytest.approx(angle, abs=1e-6)
+    for middle, farthest in ((1e-7, 0.0), (-1e-7, 180.0)):
+        _, degrees = curve(f1=1.0, b1=0.5, c=middle).farthest()
+        assert degrees[0] == pytest.approx(farthest, abs=1e-4)
+
+
+def test_a_circle_is_as_far_at_every_angle_and_0_is_the_first() -> None:
+    draw = np.random.default_rng(3)
+    for number in (-3, -1, 1, 2, 5):
+        amplitudes = np.zeros((17, 40), complex)
+        amplitudes[number + 8] = draw.normal(size=40) + 1j * draw.normal(size=40)
+        distance, degrees = ClosedCurve(amplitudes).farthest()
+        assert distance == pytest.approx(np.abs(amplitudes[number + 8]), rel=1e-14)
+        assert (degrees == 0).all()
+
+
+def test_even_waves_alone_are_about_their_middle() -> None:
+    """½ + e^{2iφ} is a circle about ½; e^{iφ} + 0.3 e^{−2iφ} is its own image by a third of a turn: about 0 exactly."""
+    centre, radius, _ = curve(c=0.5, f2=1.0).least_circle()
+    assert centre[0] == pytest.approx(0.5, abs=1e-12)
+    assert radius[0] == pytest.approx(1.0, rel=1e-12)
+    centre, radius, _ = curve(f1=np.exp(0.3j), b2=0.3 * np.exp(0.1j)).least_circle()
+    assert centre[0] == 0
+    assert radius[0] == pytest.approx(1.3, rel=1e-13)
+
+
 def test_three_points_carry_a_circle() -> None:
     """A right angle is in the half circle over its hypotenuse; of a fourth point within nothing depends."""
     points = np.array([[0.0], [6.0], [8.0j], [1.0 + 1.0j]])
@@ -91,6 +143,45 @@ def test_a_stretch_of_zeros_is_one_root_with_its_ends() -> None:
     found = roots(lambda x: np.maximum(x[:, 0] - 0.61803, 0.0) + np.minimum(x[:, 0] - 0.3141, 0.0))
     assert found.places == pytest.approx([0.3141], abs=1e-8)
     assert found.until == pytest.approx([0.61803], abs=1e-8)
+
+
+def test_an_end_of_a_stretch_of_rounding_is_no_second_root() -> None:
+    """−1e-14 where it is flat, a line beyond: of terms of size 1 that is zero on the flat half."""
+    falling = roots(lambda places: np.maximum(0.5 - places[:, 0], 0.0) - 1e-14, 1.0)
+    assert falling.places == pytest.approx([0.5], abs=1e-6)
+    assert falling.until.tolist() == [1.0]
+    rising = roots(lambda places: np.maximum(places[:, 0] - 0.5, 0.0) - 1e-14, 1.0)
+    assert rising.places.tolist() == [0.0]
+    assert rising.until == pytest.approx([0.5], abs=1e-6)
+
+
+def test_rounding_at_either_end_is_a_root_unless_one_is_next_to_it() -> None:
+    assert roots(lambda places: places[:, 0] + 1e-15, 1.0).places.tolist() == [0.0]
+    assert roots(lambda places: 1 - places[:, 0] + 1e-15, 1.0).places.tolist() == [1.0]
+    beside = roots(lambda places: places[:, 0] - 1e-13, 1.0)
+    assert beside.places == pytest.approx([1e-13], rel=1e-9, abs=0.0)
+
+
+def test_newton_stays_in_its_bracket() -> None:
+    """tanh 5(x − a), rising and falling: its chord and its tangents far from a lead out of the bracket."""
+    roots_at = np.array([0.3, 0.3, 7.9, -3.5])
+    signs = np.array([1.0, -1.0, 1.0, -1.0])
+    low = np.full(4, -4.0)
+    high = np.full(4, 8.0)
+
+    def function(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        values = np.tanh(5 * (x - roots_at))
+        return signs * values, signs * 5 * (1 - values**2)
+
+    found = bracketed_roots(function, low, high, function(low)[0], function(high)[0])
+    assert found == pytest.approx(roots_at, rel=1e-15)
+
+
+def test_a_dip_of_which_samples_see_the_foot_alone() -> None:
+    """½ − e^{−u²} with u = (x − 0.5078)/0.004: zero at u = ±√ln 2; at x = 1/2 it is 0.478, elsewhere ½."""
+    found = roots(lambda places: 0.5 - np.exp(-(((places[:, 0] - 0.5078) / 0.004) ** 2)))
+    half = 0.004 * math.sqrt(math.log(2))
+    assert found.places == pytest.approx([0.5078 - half, 0.5078 + half], abs=1e-12)
 
 
 def test_roots_close_together_where_the_function_nearly_touches_zero() -> None:

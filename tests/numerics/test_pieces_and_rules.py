@@ -62,6 +62,23 @@ def test_samples_are_carried_over_the_end_of_the_cycle() -> None:
     assert carried == pytest.approx(exact, abs=1e-13)
 
 
+def test_samples_of_few_nodes_are_carried_to_more() -> None:
+    """A trace has 6 nodes on its short pieces; the common ones have 16, also where they are the same pieces."""
+    breaks = Angles(np.zeros(120, dtype=np.intp), np.arange(0.0, 360.0, 3.0))
+    own = Pieces.between(breaks, 1, 360.0, 6)
+    pieces = common([(own, 0.0), (pieces_at(1.0), 0.0)], 360.0)
+    assert pieces.degrees.shape[0] == 16
+    carried = pieces.resampled(of_angle(own, np.sin), own)
+    assert carried == pytest.approx(of_angle(pieces, np.sin), abs=1e-10)
+
+
+def test_pieces_by_a_crank_that_lags_count_from_its_own_right_angles() -> None:
+    pieces = pieces_at(12.0)
+    own = pieces.by_crank(130.0)
+    assert own.degrees == pytest.approx(pieces.degrees - 130.0, abs=1e-12)
+    assert np.abs(own.offset + own.half).max() <= 45.0
+
+
 def test_a_value_at_a_jump_is_that_of_the_side_that_is_meant() -> None:
     pieces = pieces_at(100.0)
     values = np.where(pieces.middle > 100.0, 1.0, 0.0) * np.ones((16, 1))
@@ -71,7 +88,57 @@ def test_a_value_at_a_jump_is_that_of_the_side_that_is_meant() -> None:
         assert pieces.at(values, zero, at, np.array([within]))[0] == pytest.approx(exact, abs=1e-14)
 
 
+def test_a_right_angle_is_cut_at_45_degrees_only_where_a_piece_would_be_too_wide() -> None:
+    assert pieces_at(22.5, 67.5).low[:4].tolist() == [0.0, 22.5, 67.5, 90.0]
+    assert pieces_at(22.0, 67.5).low[:5].tolist() == [0.0, 22.0, 45.0, 67.5, 90.0]
+
+
+def test_breaks_count_modulo_the_cycle() -> None:
+    assert pieces_at(-30.0, 400.0).low.tolist() == pieces_at(330.0, 40.0).low.tolist()
+
+
+def test_parts_of_a_piece_are_equal_and_one_behind_the_other() -> None:
+    pieces = pieces_at()
+    parts = pieces.parted(np.where(pieces.low == 45.0, 3, 1))
+    assert parts.low[:5] == pytest.approx([0.0, 45.0, 60.0, 75.0, 90.0])
+    assert parts.half[1:4] == pytest.approx([7.5, 7.5, 7.5])
+    assert parts.low[1:] == pytest.approx(parts.low[:-1] + 2 * parts.half[:-1])
+
+
+def test_a_value_beyond_the_cycle_is_that_of_the_same_angle() -> None:
+    pieces = pieces_at(100.0)
+    values = of_angle(pieces, np.sin)
+    degrees = np.array([-10.0, 365.0, 470.0])
+    at = pieces.at(values, np.zeros(3, dtype=np.intp), degrees)
+    assert at == pytest.approx(np.sin(np.radians(degrees)), abs=1e-14)
+
+
+def test_machines_have_nothing_to_do_with_one_another() -> None:
+    """Of two machines with values of other signs: no zeros, integrals of their own from 0 on, and extremes."""
+    breaks = Angles(np.array([0, 1, 1]), np.array([100.0, 50.0, 300.0]))
+    pieces = Pieces.between(breaks, 2, 360.0)
+    values = pieces.filled(np.where(pieces.machine == 0, 3.0, -1.0))
+    assert len(pieces.zeros(values).degrees) == 0
+    running = pieces.running(values)
+    assert running[0, pieces.first] == pytest.approx([0.0, 0.0], abs=1e-15)
+    ends = np.append(pieces.first[1:], len(pieces.half)) - 1
+    assert running[-1, ends] == pytest.approx([6 * np.pi, -2 * np.pi], rel=1e-15)
+    extremes = pieces.extremes([values, -2 * values])
+    assert extremes.largest.tolist() == [[3.0, -1.0], [-6.0, 2.0]]
+    assert extremes.smallest.tolist() == [[3.0, -1.0], [-6.0, 2.0]]
+
+
 # integrals
+
+
+def test_the_running_integral_of_many_pieces_is_their_sum() -> None:
+    pieces = pieces_at(*np.arange(0.0, 360.0, 0.25))
+    for seed in range(20):
+        draw = np.random.default_rng(seed)
+        values = pieces.filled(draw.uniform(1.0, 2.0, len(pieces.half)))
+        inside = (pieces.rule.area @ values) * np.radians(pieces.half)
+        exact = math.fsum(inside[-1].tolist())
+        assert pieces.running(values)[-1, -1] == pytest.approx(exact, rel=3e-16, abs=0.0)
 
 
 def test_the_running_integral_loses_nothing_over_many_pieces() -> None:
@@ -124,6 +191,19 @@ def test_a_zero_that_is_passed_and_passed_back_at_a_break_is_none() -> None:
     values = np.ones((16, len(pieces.half)))
     values[:, 0] = 0.5 - 0.5 * pieces.rule.nodes - 1e-12 * (pieces.rule.nodes + 1)
     assert len(pieces.zeros(values).degrees) == 0
+
+
+def test_zeros_of_two_machines_are_each_their_own() -> None:
+    pieces = Pieces.between(Angles(np.array([0, 1]), np.array([33.0, 77.0])), 2, 360.0)
+    zeros = pieces.zeros(np.sin(np.radians(pieces.degrees - 10.0)))
+    assert zeros.machine.tolist() == [0, 0, 1, 1]
+    assert zeros.degrees == pytest.approx([10.0, 190.0, 10.0, 190.0], abs=1e-11)
+
+
+def test_a_jump_at_the_end_of_the_cycle_is_at_0() -> None:
+    pieces = pieces_at()
+    zeros = pieces.zeros(pieces.degrees - 180.0)
+    assert zeros.degrees == pytest.approx([0.0, 180.0], abs=1e-11)
 
 
 def test_rounding_about_zero_is_no_change_of_sign() -> None:
@@ -194,6 +274,40 @@ def test_the_highest_magnitude_of_a_vector() -> None:
     )
     assert value[0, 0] == pytest.approx(1.0, rel=1e-14)
     assert at[0, 0] == pytest.approx(math.degrees(0.3), abs=1e-4)
+
+
+def test_a_summit_between_nodes_may_be_higher_than_all_samples() -> None:
+    """1 everywhere but on one piece, where a parabola of 1.0001 is lower than 1 at every node."""
+    pieces = pieces_at()
+    nodes = pieces.rule.nodes
+    between = (nodes[7] + nodes[8]) / 2
+    parabola = 1.0001 - 0.1 * (nodes - between) ** 2
+    assert parabola.max() < 1
+    values = np.where(pieces.low == 180.0, parabola[:, None], 1.0)
+    extremes = pieces.extremes([values])
+    assert extremes.largest[0, 0] == pytest.approx(1.0001, rel=1e-14)
+    assert extremes.largest_at[0, 0] == pytest.approx(202.5 + 22.5 * between, abs=1e-6)
+
+
+def test_extremes_of_two_quantities_and_two_machines_are_each_their_own() -> None:
+    pieces = Pieces.between(Angles(np.array([0, 1]), np.array([33.0, 77.0])), 2, 360.0)
+    phi = np.radians(pieces.degrees)
+    ahead = np.where(pieces.machine == 0, 0.0, np.radians(30.0))
+    values = [np.sin(phi - ahead), 2 * np.cos(phi - ahead)]
+    extremes = pieces.extremes(values)
+    assert extremes.largest_at == pytest.approx(np.array([[90.0, 120.0], [0.0, 30.0]]), abs=1e-6)
+    assert extremes.smallest_at == pytest.approx(
+        np.array([[270.0, 300.0], [180.0, 210.0]]), abs=1e-6
+    )
+    assert extremes.largest == pytest.approx(np.array([[1.0, 1.0], [2.0, 2.0]]), rel=1e-14)
+
+
+def test_a_size_smaller_than_the_values_changes_no_extreme() -> None:
+    pieces = pieces_at(100.0)
+    for angle in np.linspace(1.0, 179.0, 30):
+        values = [np.cos(2 * np.radians(pieces.degrees - angle))]
+        extremes = pieces.extremes(values, np.zeros((1, 1)))
+        assert extremes.largest_at[0, 0] == pytest.approx(angle, abs=1e-5)
 
 
 def test_of_equal_extremes_the_first_one() -> None:

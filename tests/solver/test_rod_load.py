@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
 
+from kurbel.checks.limits import cases_report
+from kurbel.cli.request import cases_of
 from kurbel.machine_file import loads
 from kurbel.notes.warnings import cylinder_warnings
 from kurbel.report.commands import report_of
@@ -157,6 +159,20 @@ def test_a_pump_gets_no_rod_load_but_by_name() -> None:
         # after the outer dead centre 20 bar on the area, and m R ω² (1 − λ) at 1 Hz
         largest = 20e5 * float(pi) / 4 * 0.15**2 + 20 * 0.1 * (2 * float(pi)) ** 2 * (1 - 1 / 5)
         assert forces.rod_compression_max.value == pytest.approx(largest, rel=1e-12)
+
+
+def test_load_cases_of_a_pump_have_no_rod_load_either() -> None:
+    cases = "cases: [{name: slow, set: {speed: 30 rpm}}]\n"
+    for text, is_compressor in ((PUMP, False), (ALWAYS_PRESSED, True)):
+        machine = loads(text + cases)
+        report = cases_report(machine, cases_of(machine), "forces", "metric")
+        (table,) = [table for part in report.all_parts for table in part.place_tables]
+        ids = {column.id for column in table.columns}
+        assert "p_max" in ids
+        assert ("rod_compression_max" in ids) == is_compressor
+        # by name it is there
+        named = cases_report(machine, cases_of(machine), "forces", "metric", ["P_G,d"])
+        assert named.all_parts[0].place_tables[0].columns[0].id == "rod_compression_max"
 
 
 def test_a_role_makes_a_compressor_of_a_trace() -> None:

@@ -200,10 +200,9 @@ def test_a_lost_sample_is_named_by_its_line(tmp_path: Path) -> None:
 
 def test_the_other_end_with_another_clearance(tmp_path: Path) -> None:
     """Its lines, with the clearance of the other end, show another dead centre than half a turn; the flanks do not."""
-    pressures = 19.6 * compressor(0.184, 1.9, 1.4)
-    text = machine_text(tmp_path, pressures, ", clearance: 0.1", end="crank_end")
-    (note,) = trace_notes(text)
-    assert re.search(r"'angle_zero: -?180 deg', or is it the trace of the head end\?", note)
+    pressures = 19.6 * np.roll(compressor(0.184, 1.9, 1.3, is_crank_end=True), 180)
+    (note,) = trace_notes(machine_text(tmp_path, pressures, ", clearance: 0.25"))
+    assert re.search(r"'angle_zero: -?180 deg', or is it the trace of the crank end\?", note)
 
 
 def test_rows_numbered_as_angles(tmp_path: Path) -> None:

@@ -415,7 +415,10 @@ def cases_report(
     for case in cases:
         try:
             for subject in subjects_of(case, command):
-                values = _numbers(subject, chosen)
+                quantities = chosen
+                if not names:
+                    quantities = _printed(subject, chosen)
+                values = _numbers(subject, quantities)
                 if values:
                     rows.setdefault(subject.name, []).append(((name_of(case),), values))
         except KurbelError as error:
@@ -431,6 +434,11 @@ def cases_report(
         table = Places("cases", title, ("case",), chosen, rows_of_part, headed=True)
         parts.append(Subject(part, tables=[table]))
     return report_on(Frame(command, (), None, system), base, "Load cases", parts, notes)
+
+
+def _printed(subject: Subject, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """Return those of these key values that a part prints, as only compressors have rod loads."""
+    return {id: quantity for id, quantity in quantities.items() if subject.is_printed(quantity)}
 
 
 def _numbers(subject: Subject, quantities: Mapping[str, Quantity]) -> dict[str, float]:

@@ -284,11 +284,11 @@ def kurbel(context: click.Context) -> None:
       kurbel table                              the factors of any slider-crank
       kurbel example                            the machines that come with kurbel
       kurbel example waterworks > engine.yaml   take one as a pattern
-      kurbel check engine.yaml                  what will be computed, what is left out
-      kurbel motion engine.yaml                 displacement, velocity, acceleration
+      kurbel check engine.yaml                  what is computed, and what is not
+      kurbel motion engine.yaml                 travel, velocity, acceleration
       kurbel forces engine.yaml                 forces and key values
       kurbel flywheel engine.yaml               turning effort, flywheel, speed
-      kurbel balance engine.yaml                unbalanced forces and moments, counterweights
+      kurbel balance engine.yaml                unbalanced forces, counterweights
       kurbel plot --list                        list of pictures
       kurbel plot engine.yaml                   the most informative picture
       kurbel report engine.yaml -o report.html  everything on one page

@@ -288,7 +288,7 @@ def key_value_option(*names: str, **how: Any) -> Callable[[Command], Command]:
 def format_option(*formats: str, said: str = "") -> Callable[[Command], Command]:
     """Return the option of the output format; said: what its help begins with."""
     listed = said or f"{', '.join(formats)}; "
-    text = f"{listed}if not given by the suffix of --output, or table."
+    text = f"{listed}if not given, by the suffix of --output, or table."
     return click.option(
         "--format", "-f", "format", type=click.Choice(formats), metavar="FORMAT", help=text
     )
@@ -381,7 +381,7 @@ units_option = click.option(
     callback=_write_messages_in,
     is_eager=True,  # the other options have messages, too
     metavar="SYSTEM",
-    help="metric (mm, bar, kN), technical (mm, kgf, at), imperial (in, lbf, psi, deg F) or si; if not given si in "
+    help="metric (mm, bar, kN), technical (mm, kgf, at), imperial (in, lbf, psi, deg F) or si; if not given, si in "
     "csv and json, else metric.",
 )
 

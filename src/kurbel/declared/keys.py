@@ -40,7 +40,8 @@ class Key(NamedTuple):
     and if that one is required, one of the two is. needs: a key that must be given with it; or_else: what to write
     where that one is not known. also: other words that people try for it. attribute: of the record, which has the
     value; '' for a key that only determines others: `gives` takes the values by key and returns these attributes.
-    usual: the rule of thumb for its size, with its source.
+    compared: it may be given beside the key that it is instead of; a rule compares both. usual: the rule of thumb for
+    its size, with its source.
     """
 
     form: Form
@@ -55,6 +56,7 @@ class Key(NamedTuple):
     also: tuple[str, ...] = ()
     attribute: str = ""
     gives: Callable[[ValuesByKey], dict[str, object]] | None = None
+    compared: bool = False
     usual: str = ""
 
     @property
@@ -91,9 +93,16 @@ class Key(NamedTuple):
 Keys = dict[str, Key]
 
 
-def required(keys: Keys) -> list[str]:
-    """Return the names of the keys that must be given, and that no other key can replace."""
-    replaceable = {key.instead for key in keys.values()}
+def required(keys: Keys, present: Collection[str] = ()) -> list[str]:
+    """Return the names of the keys that must be given, and that no other key can replace.
+
+    One that is compared with what it replaces does so where it is present: the message on what is missing names the
+    usual key alone.
+    """
+    replaceable = set()
+    for name, key in keys.items():
+        if not key.compared or name in present:
+            replaceable.add(key.instead)
     return [name for name, key in keys.items() if key.required and name not in replaceable]
 
 
@@ -160,7 +169,7 @@ def contradictions(keys: Keys, present: Collection[str]) -> Iterator[Rule]:
     for name, key in keys.items():
         other = key.instead
         # the same quantity twice
-        if name in present and other in present:
+        if name in present and other in present and not key.compared:
             yield Rule(name, True, f"'{other}' and '{name}' mean the same; give only one of them")
         # a key without the one that it needs
         if name in present and key.needs and key.needs not in present:
@@ -267,6 +276,16 @@ class Record:
     def rules(self) -> Iterator[Rule]:
         """Yield the rules on the values, in addition to the bounds of the entries."""
         return iter(())
+
+    @classmethod
+    def completed(
+        cls, values: dict[str, object], made: Callable[[object], Any]
+    ) -> dict[str, object]:
+        """Return values by key with what follows from those of several inner mappings, before these become records.
+
+        made: makes the record of one of them.
+        """
+        return values
 
     @classmethod
     def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:

@@ -437,14 +437,14 @@ def other_zero(unit: str, zero: str, what: str) -> str:
     zero: `absolute`, `gauge`, or '' of a difference of pressures.
 
     >>> other_zero("7 bara".split()[1], "gauge", "p_max")
-    "'bara' is absolute, but p_max is gauge here; write the gauge pressure in bar"
+    "'bara' is absolute, but p_max is gauge; write the gauge pressure in bar"
     """
     named, plain = zero_and_unit(unit)
     if named in ("", zero):
         return ""
     if not zero:
         return f"'{unit}' is {named}, but {what} has no zero; write the unit {plain}"
-    return f"'{unit}' is {named}, but {what} is {zero} here; write the {zero} pressure in {plain}"
+    return f"'{unit}' is {named}, but {what} is {zero}; write the {zero} pressure in {plain}"
 
 
 @cache

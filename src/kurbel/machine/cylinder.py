@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -11,8 +12,16 @@ import numpy as np
 
 from kurbel.arrays import Truth
 from kurbel.crank_angle import CYCLES, CrankAngle
-from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
+from kurbel.declared.forms.structures import (
+    Inline,
+    Listing,
+    OneOf,
+    ReadMapping,
+    RecordForm,
+    Variant,
+)
 from kurbel.declared.forms.values import NumberForm
+from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import (
     FieldValue,
     Record,
@@ -22,6 +31,7 @@ from kurbel.declared.record import (
     field,
     first_of,
 )
+from kurbel.errors import Path
 from kurbel.machine.parts import (
     ConnectingRod,
     Friction,
@@ -35,13 +45,14 @@ from kurbel.machine.parts import (
 )
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
-from kurbel.numerics.arithmetic import where
+from kurbel.numerics.arithmetic import sqrt, where
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
     from kurbel.machine.link_rod import LinkRod
     from kurbel.machine.load import Force
     from kurbel.machine.valve import Valve
+    from kurbel.traces.correct import Strokes
 
 MOST_TURNS = 100
 """Turns of the shaft after which everything repeats, at most."""
@@ -245,6 +256,26 @@ class Cylinder(Record):
         yield Rule("tandem", bool(values.get("tandem")) and "piston" not in values, alone)
 
     @classmethod
+    def completed(
+        cls, values: dict[str, object], made: Callable[[object], Any]
+    ) -> dict[str, object]:
+        """Return values by key with the bore of a displacement and a stroke, or the stroke of the first two."""
+        piston = values.get("piston")
+        tandem = values.get("tandem")
+        pistons = [piston, *(tandem if isinstance(tandem, tuple) else ())]
+        if not any(_has_displacement(mapping) for mapping in pistons):
+            return values
+        mechanism = values["mechanism"]
+        if isinstance(mechanism, ReadMapping) and isinstance(piston, ReadMapping):
+            mechanism = made(_with_stroke(mechanism, piston))
+        stroke = mechanism.stroke if isinstance(mechanism, Mechanism) else REFUSED
+        sized = [_with_bore(mapping, stroke) for mapping in pistons]
+        values = {**values, "mechanism": mechanism, "piston": sized[0]}
+        if tandem is not None:
+            values["tandem"] = tuple(sized[1:]) if isinstance(tandem, tuple) else tandem
+        return values
+
+    @classmethod
     def of_keys(
         cls,
         piston: Piston | None = None,
@@ -276,6 +307,8 @@ class Cylinder(Record):
             yield from (rule.below("valve") for rule in self.valve.rules_on(self.mechanism))
         yield from _of_events(self)
         yield from _of_strokes(self)
+        yield from _of_displacements(self)
+        yield from _of_measured_strokes(self)
         at_point = (
             [rule.below("point") for rule in self.point.rules_on(self.mechanism)]
             if self.point
@@ -425,6 +458,111 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
             "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
         )
         yield Rule("guides", locks, message)
+
+
+def _has_displacement(mapping: object) -> bool:
+    return isinstance(mapping, ReadMapping) and "displacement" in mapping.values
+
+
+def _with_stroke(mechanism: ReadMapping, piston: ReadMapping) -> ReadMapping:
+    """Return a mechanism with the stroke that a piston of this bore and displacement has, if it has none."""
+    keys = mechanism.form.keys
+    has_stroke = "crank" in mechanism.values or "stroke" in mechanism.values
+    bore: Any = piston.values.get("bore")
+    displacement: Any = piston.values.get("displacement")
+    if has_stroke or "stroke" not in keys or bore is None or displacement is None:
+        return mechanism
+    if bore is REFUSED or displacement is REFUSED:
+        return mechanism.with_value("stroke", REFUSED)
+    # s = 4 V/(π d²)
+    return mechanism.with_value("stroke", displacement / (math.pi / 4 * bore**2))
+
+
+def _with_bore(mapping: object, stroke: Any) -> object:
+    """Return a piston with the bore that its displacement and a stroke in m have, if it has none."""
+    if not isinstance(mapping, ReadMapping) or not _has_displacement(mapping):
+        return mapping
+    if "bore" in mapping.values:
+        return mapping
+    displacement: Any = mapping.values["displacement"]
+    ratio: Any = mapping.values.get("lever_ratio", 1.0)
+    if REFUSED in (stroke, displacement, ratio):
+        return mapping.with_value("bore", REFUSED)
+    # d = √(4 V/(π s))
+    area = displacement / (stroke * np.abs(ratio))
+    return mapping.with_value("bore", sqrt(area / (math.pi / 4)))
+
+
+def _of_displacements(cylinder: Cylinder) -> Iterator[Rule]:
+    """A displacement is that of bore and stroke."""
+    for number, piston in enumerate(cylinder.pistons):
+        path = ("tandem", number - 1) if number else ()
+        stroke = cylinder.mechanism.stroke * np.abs(piston.lever_ratio)
+        yield from (rule.below(*path) for rule in piston.displacement_rules(stroke))
+
+
+_SAME_STROKE = 0.03
+"""Relative difference of the range of a measured volume from the volume that a piston sweeps."""
+
+
+def _of_measured_strokes(cylinder: Cylinder) -> Iterator[Rule]:
+    """A trace over volumes or displacements runs over those that its piston sweeps."""
+    for number, piston in enumerate(cylinder.pistons):
+        path = ("tandem", number - 1, "indicator") if number else ("indicator",)
+        areas = {"head_end": piston.head_area, "crank_end": piston.crank_area}
+        chambers = piston.chambers
+        if chambers.get("crank_end") is chambers.get("head_end"):  # mirrored
+            chambers.pop("crank_end", None)
+        for end, chamber in chambers.items():
+            if not chamber.traced or chamber.strokes is None:
+                continue
+            swept = cylinder.mechanism.stroke * np.abs(piston.lever_ratio)
+            if chamber.strokes.kind == "volume":
+                swept = swept * areas[end]
+            place = (*path, end, "trace")
+            yield from _of_measured_range(chamber.strokes, swept, place)
+            yield from _of_measured_clearance(chamber.strokes, chamber.clearance, place)
+
+
+def _of_measured_range(strokes: Strokes, swept: float, path: Path) -> Iterator[Rule]:
+    """Yield that the range of a measured volume or displacement is not what the piston sweeps, in m³ or m."""
+    ratio = strokes.swept / swept
+    is_unit = max(ratio, 1 / ratio) > _OTHER_UNIT
+    is_different = not is_unit and abs(ratio - 1) > _SAME_STROKE
+    form = "volume"
+    cause = "bore, rod or stroke"
+    if strokes.kind == "displacement":
+        form = "length"
+        cause = "stroke"
+    message = f"the {strokes.kind}s run over {{run:{form}}}, the piston sweeps {{swept:{form}}}: "
+    numbers = {"run": strokes.swept, "swept": swept}
+    place = (*path, f"{strokes.kind}_unit")
+    yield Rule(place, is_unit, f"{message}is '{strokes.kind}_unit' right?", numbers)
+    percent = round(100 * (ratio - 1), 1)
+    message = f"{message}{percent:g} %; correct {cause}, or cut the file"
+    yield Rule(place, is_different, message, numbers)
+
+
+def _of_measured_clearance(strokes: Strokes, clearance: float | None, path: Path) -> Iterator[Rule]:
+    """Yield that a clearance is another one than that of the smallest volume; 0 in volumes that are displaced alone."""
+    if clearance is None or strokes.kind != "volume":
+        return
+    measured = strokes.smallest / strokes.swept
+    has_clearance = measured > _LEAST_MEASURED
+    is_different = has_clearance and abs(measured / clearance - 1) > _SAME_CLEARANCE
+    message = (
+        f"the smallest volume is {measured:.4g} of the stroke volume, the clearance {clearance:.4g}; "
+        "leave 'clearance' out, or correct it"
+    )
+    yield Rule((*path, "volume_column"), is_different, message)
+
+
+_LEAST_MEASURED = 0.002
+"""Smallest over swept volume below which a file has the displaced volume alone."""
+_SAME_CLEARANCE = 0.03
+"""Relative difference of two clearances through rounding."""
+_OTHER_UNIT = 2.0
+"""Ratio of two volumes from which on one has another unit."""
 
 
 def _of_events(cylinder: Cylinder) -> Iterator[Rule]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
@@ -17,6 +18,7 @@ from kurbel.declared.forms.values import (
     CLEARANCE_OR_NONE,
     Choice,
     NumberForm,
+    Ordinates,
     Points,
     order_faults,
     size_faults,
@@ -41,12 +43,13 @@ class Rectangle(StrokeCard):
     """A card of horizontal lines, for any working cycle; pressures in Pa.
 
     level: the pressure on every stroke, None for the ambient; mean: the mean indicated pressure p_i, by which the
-    expansion line of a driving chamber (or, if negative, the compression line of a driven one) differs from it. notes:
-    remarks for the user.
+    expansion line of a driving chamber (or, if negative, the compression line of a driven one) differs from it. doubts: on
+    what it was measured from; notes: remarks for the user.
     """
 
     level: float | None = None
     mean: float = 0.0
+    doubts: tuple[str, ...] = ()
 
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke", "four-stroke")
 
@@ -54,9 +57,10 @@ class Rectangle(StrokeCard):
     def notes(self) -> tuple[str, ...]:
         """That such a card has the correct work, but not the true pressures."""
         if not self.mean:
-            return ()
+            return self.doubts
         mean = show(self.mean, "pressure")
         return (
+            *self.doubts,
             f"a rectangular card of the mean pressure {mean} replaces the true one: "
             "work and power are correct, forces over the angle are not",
         )
@@ -153,6 +157,14 @@ class Card(StrokeCard, Record):
         instead="area",
         needs="drawn",
     )
+    _ordinates = alternative(
+        Ordinates(),
+        "Heights between its lines in the middle of equal strips of the card, as bare numbers in the unit of its "
+        "length; their mean over the spring is p_i",
+        instead="area",
+        needs="drawn",
+        also=("mid_ordinates", "midordinates", "mean_ordinates", "heights"),
+    )
     _expansion = alternative(_POINTS, "Line while the burnt or admitted gas expands")
     _compression = alternative(_POINTS, "Line while the chamber is compressed or empties")
     _intake = alternative(_POINTS, "Suction line of a four-stroke cycle")
@@ -171,6 +183,13 @@ class Card(StrokeCard, Record):
     drawn: bool = False
 
     @classmethod
+    def rules_of_keys(cls, values: ValuesByKey) -> Iterator[Rule]:
+        """Yield that the mean height is given twice."""
+        is_given_twice = "mean_height" in values and "ordinates" in values
+        message = "'mean_height' and 'ordinates' mean the same; give only one of them"
+        yield Rule("ordinates", is_given_twice, message)
+
+    @classmethod
     def of_keys(
         cls,
         unit: UnitFactor | None = None,
@@ -183,15 +202,20 @@ class Card(StrokeCard, Record):
 
         lines: points by the name of the line, and what a planimeter measured.
         """
-        planimeter = {name: lines.pop(name) for name in ("area", "mean_height") if name in lines}
-        if drawn and planimeter:
+        measured = {name: lines.pop(name) for name in _OF_HEIGHTS if name in lines}
+        if drawn and measured:
             message = "the lines have an area of their own; leave out the one by planimeter"
+            if "ordinates" in measured:
+                message = "the lines have a mean height of their own; leave out the ordinates"
             refuse(*(Fault((name,), message) for name in lines))
             # p_i = a/(l · spring)
-            height = planimeter.get("mean_height")
-            if height is None:
-                height = planimeter["area"] / drawn.length
-            return Rectangle(mean=height / drawn.spring)
+            height: float = measured.get("mean_height", 0.0)
+            doubts: tuple[str, ...] = ()
+            if "area" in measured:
+                height = measured["area"] / drawn.length
+            if "ordinates" in measured:
+                height, doubts = _mean_ordinate(measured["ordinates"], drawn)
+            return Rectangle(mean=height / drawn.spring, doubts=doubts)
 
         # missing or faulty lines
         paper_unit, factor, stroke = drawn.scales if drawn else ("", unit or (1, 1), 1.0)
@@ -258,6 +282,31 @@ class Card(StrokeCard, Record):
         else:
             message = "{lowest:pressure} is below the vacuum, which is at {vacuum:pressure}"
             yield Rule((), lowest + lift < 0, message, numbers)
+
+
+_OF_HEIGHTS = ("area", "mean_height", "ordinates")
+"""Keys of a drawn card that give its mean height instead of its lines."""
+
+
+def _mean_ordinate(ordinates: tuple[float, ...], drawn: Drawn) -> tuple[float, tuple[str, ...]]:
+    """Return the mean of mid-ordinates in m, and what is doubtful about them; raises RuleError."""
+    unit, _, length = drawn.scales
+    for index, height in enumerate(ordinates):
+        if abs(height) > length:
+            message = (
+                f"{height:g} {unit} is more than the card is long ({length:g} {unit}); heights are "
+                "in the unit of its length"
+            )
+            refuse(Fault(("ordinates", index), message))
+    doubts: tuple[str, ...] = ()
+    if ordinates[0] == 0 == ordinates[-1] and any(ordinates):
+        doubts = (
+            "the first and the last ordinate are 0: are they at the ends of the card? Mid-ordinates are "
+            "in the middle of equal strips",
+        )
+    mean = math.fsum(ordinates) / len(ordinates)
+    metres = 0.0254 if unit == "in" else 1e-3
+    return mean * metres, doubts
 
 
 def _in_order(points: list[DiagramPoint], start: int) -> list[DiagramPoint]:

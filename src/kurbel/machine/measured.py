@@ -20,8 +20,8 @@ from kurbel.declared.forms.values import (
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.declared.units import DiagramPoint, UnitFactor
 from kurbel.errors import Fault, RuleError, refused
-from kurbel.traces.correct import KnownLevel, Trace, motored_peak
-from kurbel.traces.cycles import samples_of_file, whole_cycles
+from kurbel.traces.correct import KnownLevel, Strokes, Trace, motored_peak
+from kurbel.traces.cycles import Laps, samples_of_file, whole_cycles
 from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout
 
 if TYPE_CHECKING:
@@ -107,7 +107,9 @@ class Columns(Record):
         if f"{cls.what}_columns" in values:
             key = f"{cls.what}_columns"
             columns = values[key]
-        angle_column = values.get("pulse_column", values.get("angle_column", 1))
+        angle_column = values.get("angle_column", 1)
+        for other in ("pulse_column", "volume_column", "displacement_column"):
+            angle_column = values.get(other, angle_column)
         is_of_angles = angle_column in columns and "angle_step" not in values
         yield Rule(key, is_of_angles, f"column {angle_column} is that of the angles")
         # times and the speed that makes them angles
@@ -177,6 +179,24 @@ class Measured(Columns):
         "Angle of the firing or inner dead centre in the file; or a motored trace from which it is found",
         absent="0 deg",
     )
+    volume_column = alternative(
+        int,
+        "Column of the volumes of the chamber, instead of a column of angles",
+        instead="angle_column",
+        needs="volume_unit",
+        also=("v_column",),
+    )
+    volume_unit = alternative(unit_name("volume"), "Unit of the volumes", needs="volume_column")
+    displacement_column = alternative(
+        int,
+        "Column of the displacements of the piston from its inner dead centre, or any other place, instead of a "
+        "column of angles",
+        instead="angle_column",
+        needs="displacement_unit",
+    )
+    displacement_unit = alternative(
+        unit_name("length"), "Unit of the displacements", needs="displacement_column"
+    )
     pressure_columns = alternative(
         COLUMN_RANGE,
         "Columns of pressures, one for each measured cycle",
@@ -243,7 +263,16 @@ class Measured(Columns):
         yield from super().rules_of_keys(values)
         has_volumes = "clearance" in values or "compression_ratio" in values
         message = "heat needs the volumes; give 'clearance' or 'compression_ratio'"
-        yield Rule("heat", "heat" in values and not has_volumes, message)
+        lacks_volumes = not has_volumes and "volume_column" not in values
+        yield Rule("heat", "heat" in values and lacks_volumes, message)
+        # rows by volume or displacement have no other angles
+        if not {"volume_column", "displacement_column"} & values.keys():
+            return
+        for key in _OF_ANGLES:
+            message = "the crank angles follow from the order of the rows; leave it out"
+            yield Rule(key, key in values, message)
+        has_both = {"volume_column", "displacement_column"} <= values.keys()
+        yield Rule("displacement_column", has_both, "give it, or 'volume_column', not both")
 
     @classmethod
     def of_keys(
@@ -277,6 +306,7 @@ class Measured(Columns):
         # the samples, from the file of the trace or from the machine file
         files: tuple[str, ...] = ()
         file_layout = Layout()
+        strokes = None
         if file is None:
             angles, figures = np.array(points, dtype=float).T
             pressures = pressures_of(figures[np.newaxis])
@@ -288,8 +318,16 @@ class Measured(Columns):
             )
         else:
             files = (file,)
+            over = _strokes_of_layout(layout)
             file_layout = cls.layout(layout)
-            samples = samples_of_file(file, file_layout, "pressure", pressures_of, counts_against)
+            if over is None:
+                samples = samples_of_file(
+                    file, file_layout, "pressure", pressures_of, counts_against
+                )
+            else:
+                samples, strokes = _strokes_of_file()(
+                    file, file_layout, pressures_of, *over, counts_against
+                )
         # the dead centre
         notes = samples.notes
         if isinstance(angle_zero, Motored):
@@ -309,14 +347,37 @@ class Measured(Columns):
             clearance=clearance,
             level=drift == "linear",
             pegging=pegging,
-            against=counts_against,
+            against=counts_against and strokes is None,
             unit=multiplier / divisor,
             scale=scale,
             clock=samples.clock,
             suction=suction_line,
             discharge=discharge_line,
             heat=heat,
+            strokes=strokes,
         )
+
+
+_OF_ANGLES = ("angle_zero", "angle_unit", "angle_step", "pulse_column", "recorded_speed")
+"""Keys of files with angles or times."""
+
+
+def _strokes_of_file() -> Callable[..., "tuple[Laps, Strokes]"]:
+    from kurbel.traces.strokes import strokes_of_file
+
+    return strokes_of_file
+
+
+def _strokes_of_layout(layout: dict[str, Any]) -> tuple[str, float] | None:
+    """Return what a file has instead of angles, and its unit in SI; its column takes the place of theirs."""
+    for kind in ("volume", "displacement"):
+        column = layout.pop(f"{kind}_column", None)
+        unit = layout.pop(f"{kind}_unit", None)
+        if column is not None and unit is not None:
+            layout["angle_column"] = column
+            multiplier, divisor = unit
+            return kind, multiplier / divisor
+    return None
 
 
 def dead_centre(

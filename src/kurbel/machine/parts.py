@@ -415,6 +415,12 @@ def _gas() -> type[Gas]:
     return Gas
 
 
+_SAME_DISPLACEMENT = 0.005
+"""Relative difference of a displacement from that of bore and stroke, through rounded figures."""
+_SAME_ENGINE = 0.03
+"""The same of that of several cylinders, which is given in litres."""
+
+
 class Piston(Record):
     """A piston: bore and rods, and what the indicator shows on its two sides.
 
@@ -427,6 +433,18 @@ class Piston(Record):
         "d",
         above=0,
         also=("bohrung", "cylinder_diameter", "piston_diameter", "bore_diameter"),
+    )
+    displacement: float | None = field(
+        "volume",
+        "Volume that the whole bore sweeps, π/4 d² s, of one cylinder: gives the bore, or with the bore the stroke, and "
+        "is compared where both are given",
+        "V_s",
+        above=0,
+        instead="bore",
+        compared=True,
+        absent="by bore and stroke",
+        example="500 cm3",
+        also=("hubraum", "capacity", "cubic_capacity", "swept_volume", "engine_displacement"),
     )
     head_end_rod: float = field(
         "length", "Diameter of the rod through the head end", default=0.0, least=0
@@ -471,6 +489,34 @@ class Piston(Record):
             return {}
         ends = {"head_end": self.indicator.head_end, "crank_end": self.indicator.crank_end}
         return {end: chamber for end, chamber in ends.items() if chamber is not None}
+
+    def displacement_rules(self, stroke: float) -> Iterator[Rule]:
+        """Yield that the displacement is another one than that of bore and stroke in m."""
+        if self.displacement is None:
+            return
+        # V = π/4 d² s
+        swept = math.pi / 4 * self.bore**2 * stroke
+        ratio = self.displacement / swept
+        is_different = np.abs(ratio - 1) > _SAME_DISPLACEMENT
+        count = np.round(ratio)
+        is_of_several = is_different & (count > 1) & (np.abs(ratio / count - 1) < _SAME_ENGINE)
+        numbers = {
+            "given": self.displacement,
+            "swept": swept,
+            "count": count,
+            "percent": np.round(np.abs(100 * (ratio - 1)), 2),
+        }
+        message = (
+            "{given:volume} is {count} times what bore and stroke sweep, {swept:volume}; give the "
+            "displacement of one cylinder, not of the engine"
+        )
+        yield Rule("displacement", is_of_several, message, numbers)
+        sense = "more" if np.ndim(ratio) == 0 and ratio > 1 else "less"
+        message = (
+            f"{{given:volume}} is {{percent}} % {sense} than what bore and stroke sweep, "
+            "{swept:volume}; correct one of the three, or leave it out"
+        )
+        yield Rule("displacement", is_different & ~is_of_several, message, numbers)
 
     def cycle_beside(self, cycle: str) -> str:
         """Return the working cycle of a tandem piston: that of the cylinder, or the two-stroke one of its cards.

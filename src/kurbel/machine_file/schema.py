@@ -213,7 +213,7 @@ def _of_mapping(form: RecordForm, definitions: Schema) -> Schema:
     describe(form, properties, rules, definitions)
     schema = _mapping(properties) | _demands(form)
     if rules:
-        schema["allOf"] = rules
+        schema["allOf"] = [*schema.get("allOf", []), *rules]
     return schema
 
 
@@ -229,7 +229,7 @@ def describe(
             continue
         is_shared = name in properties  # with another mechanism, where it may need nothing
         properties.setdefault(name, {**_of(form, definitions), "description": key.description})
-        if key.instead:
+        if key.instead and not key.compared:
             rules.append(_none_of([[name, key.instead]]))
         if key.needs and not is_shared:
             rules.append({"dependencies": {name: [key.needs]}})
@@ -273,10 +273,15 @@ def _describe_variant(
 
 def _demands(form: RecordForm) -> Schema:
     """Return the schema of the keys that must be given."""
-    names = required(form.keys)
-    if not names:
-        return {}
-    return {"required": names}
+    demands: Schema = {}
+    names = required(form.keys, form.keys)
+    if names:
+        demands["required"] = names
+    # of a key and one that is compared with it one at least
+    compared = [(name, key.instead) for name, key in form.keys.items() if key.compared]
+    if compared:
+        demands["allOf"] = [{"anyOf": [{"required": [key]} for key in pair]} for pair in compared]
+    return demands
 
 
 def _none_of(groups: list[list[str]]) -> Schema:

@@ -141,14 +141,14 @@ def _text_without_zero(text: str, reading: Reading, path: Path, reference: str) 
     key = next((str(step) for step in reversed(path) if isinstance(step, str)), "")
     number, unit = _number_and_unit(text, key)
     zero, plain = zero_and_unit(unit) if unit else ("", "")
-    if not zero or plain not in unit_names("pressure"):
+    is_pressure = bool(zero) and plain in unit_names("pressure") and key != "name"
+    if not is_pressure:
         return text
     if zero == reference:
         return type(text)(number + plain)
-    advice = other_zero(unit, reference, "this pressure")
-    if key == "ambient":
-        advice = f"'{unit}' is {zero}, but the ambient is absolute; write the absolute pressure in {plain}"
-    elif reference:
+    what = "the ambient" if key == "ambient" else "this pressure"
+    advice = other_zero(unit, reference, what)
+    if reference and "indicator" in path:
         advice = (
             f"'{unit}' is {zero}, but 'pressures: {reference}' holds here; "
             f"write 'pressures: {zero}', or the {reference} pressure in {plain}"

@@ -88,70 +88,116 @@ def whole_report(
 ) -> Document:
     """Return the report on a machine: a first page, pictures and tables of each command, energy balance, input.
 
-    given: the keys of its file; step: of the tables in degrees; cases: its load cases; contents: what is wanted of it.
-    Raises UsageError for a section that is named and that this machine does not have.
+    key_texts: the keys of its file; step: of the tables in degrees; cases: its load cases; contents: what is wanted of
+    it. Raises UsageError for a section that is named and that this machine does not have.
     """
     stepped(step, 360.0)  # an invalid step is rejected at once
     machine = case.machine
-    sections, tables = list[Section](), list[SectionItem]()
-    left_out: dict[tuple[str, str], list[str]] = {}
-    warnings = dict.fromkeys(of_machine(case))
+    reports = _CommandSections(case, cases, system, step, contents)
     for command in REPORTS:
         progress(command.title.lower())
-        items = list[SectionItem](firing_order(machine) if command.word == "flywheel" else ())
-        try:
-            report = _report_of(command, case, system, step)
-        except NoSolutionError as error:
-            items.append(f"No solution: {error}")
-        except UsageError as error:
-            why = str(error).removeprefix(f"{machine.name}: ")
-            if command.word in contents.words:
-                raise UsageError(f"--sections {command.word}: {machine.name}: {why}") from None
-            left_out[command.title, why] = []
-            continue
-        else:
-            is_forces = command.word == "forces"
-            shown = _without_motion(report, case) if is_forces else report
-            if contents.has(command.word):
-                items.append(ReportAnswers(shown))
-            else:
-                items += _in_short(shown, command.word)
-            has_columns = any(part.columns for part in report.all_parts)
-            if has_columns and contents.has_table(command.word):
-                tables.append(OverAngle(report, command.title))
-            for part in report.all_parts:
-                for reason in part.left_out:
-                    left_out.setdefault(reason, []).append(command.title.lower())
-            # the warnings of a cylinder lack its name, and are among those of the machine
-            if report.whole:
-                warnings |= dict.fromkeys(report.whole.warnings)
-        if cases and command.in_cases:
-            with suppress(KurbelError):
-                items.append(ReportAnswers(cases_report(machine, cases, command.word, system)))
+        reports.add(command)
 
-        # what is wanted of it
-        pictures: list[Picture | str] = []
-        if contents.has_pictures(command.word):
-            pictures = _pictures(case, command.word, system)
-        if not contents.has_answers(command.word):
-            items.clear()
-        sections.append(Section(command.word, command.title, (*pictures, *items)))
-
+    # what follows the commands
+    sections = [*reports.sections]
     if contents.has(ENERGY):
         sections.append(Section(ENERGY, "Energy balance", tuple(_energy(case, system))))
-    sections.append(Section(TABLES, "Over the crank angle", tuple(tables)))
+    sections.append(Section(TABLES, "Over the crank angle", tuple(reports.tables)))
     if contents.has(LEFT_OUT):
-        sections.append(Section(LEFT_OUT, "Left out", tuple(_left_out(left_out))))
+        sections.append(Section(LEFT_OUT, "Left out", tuple(_left_out(reports.left_out))))
     if contents.has(INPUT):
         sections.append(Section(INPUT, "Input as understood", tuple(_input(case, key_texts))))
     return Document(
         machine.name,
         (subtitle_of(machine),),
-        (*_pictures(case, "", system)[:1], *first_page(case, cases, system, warnings)),
+        (*_pictures(case, "", system)[:1], *first_page(case, cases, system, reports.warnings)),
         tuple(section for section in sections if section.items),
         (provenance(machine),),
         contents.prints_tables,
     )
+
+
+class _CommandSections:
+    """The sections of the commands, and what their reports have for other sections.
+
+    tables: over the crank angle; left_out: what and why, with the titles of the commands that leave it out; warnings:
+    those of the whole machine, each once.
+    """
+
+    def __init__(
+        self, case: Case, cases: Sequence[Case], system: str, step: float, contents: Contents
+    ) -> None:
+        self.case, self.cases = case, cases
+        self.system, self.step = system, step
+        self.contents = contents
+        self.sections: list[Section] = []
+        self.tables: list[SectionItem] = []
+        self.left_out: dict[tuple[str, str], list[str]] = {}
+        self.warnings = dict.fromkeys(of_machine(case))
+
+    def add(self, command: Command) -> None:
+        """Add the section of a command as far as it is wanted, or why the machine does not have it.
+
+        Raises UsageError where it is named.
+        """
+        answers: list[SectionItem] = []
+        try:
+            report = _report_of(command, self.case, self.system, self.step)
+        except NoSolutionError as error:
+            answers.append(f"No solution: {error}")
+        except UsageError as error:
+            self._leave_out(command, error)
+            return
+        else:
+            answers += self._answers(command, report)
+            self._take_from(command, report)
+
+        items: list[SectionItem] = []
+        if self.contents.has_pictures(command.word):
+            items += _pictures(self.case, command.word, self.system)
+        if self.contents.has_answers(command.word):
+            if command.word == "flywheel":
+                items += firing_order(self.case.machine)
+            items += answers
+            items += self._load_cases(command)
+        self.sections.append(Section(command.word, command.title, tuple(items)))
+
+    def _answers(self, command: Command, report: Report) -> Iterator[SectionItem]:
+        """Yield key values and tables of places of a command, in short if it is not named itself."""
+        if command.word == "forces":
+            report = _without_motion(report, self.case)
+        if self.contents.has(command.word):
+            yield ReportAnswers(report)
+        else:
+            yield from _in_short(report, command.word)
+
+    def _take_from(self, command: Command, report: Report) -> None:
+        """Take from a report what other sections show: its columns, what it leaves out, and its warnings."""
+        has_columns = any(part.columns for part in report.all_parts)
+        if has_columns and self.contents.has_table(command.word):
+            self.tables.append(OverAngle(report, command.title))
+        for part in report.all_parts:
+            for reason in part.left_out:
+                self.left_out.setdefault(reason, []).append(command.title.lower())
+        # the warnings of a cylinder lack its name, and are among those of the machine
+        if report.whole:
+            self.warnings |= dict.fromkeys(report.whole.warnings)
+
+    def _leave_out(self, command: Command, error: UsageError) -> None:
+        """Note why the machine has no report of a command. Raises UsageError where it is named."""
+        machine = self.case.machine.name
+        why = str(error).removeprefix(f"{machine}: ")
+        if command.word in self.contents.words:
+            raise UsageError(f"--sections {command.word}: {machine}: {why}") from None
+        self.left_out[command.title, why] = []
+
+    def _load_cases(self, command: Command) -> Iterator[SectionItem]:
+        """Yield the table of load cases of a command, if it has any."""
+        if not self.cases or not command.in_cases:
+            return
+        with suppress(KurbelError):
+            machine = self.case.machine
+            yield ReportAnswers(cases_report(machine, self.cases, command.word, self.system))
 
 
 def _report_of(command: Command, case: Case, system: str, step: float) -> Report:

@@ -43,7 +43,10 @@ _PRINTED, _UNPRINTED = _BOX.format(" checked"), _BOX.format("")
 def report_page(long: Document, look: Look, paper: str, date: str) -> Iterator[str]:
     """Yield the page of a long report; paper: the word of a sheet in CSS; date: as it is shown."""
     out = Html(look._replace(format="html"))
-    pairs = PAIRS if len(long.provenance) > 1 else ""
+    are_pairs = len(long.provenance) > 1
+    pairs = PAIRS if are_pairs else ""
+    if are_pairs:
+        paper = f"{paper} landscape"
     sheet = f"@page{{size:{paper}}}\n"
     style = page_css(LONG_REPORT, pairs, PICTURE, PICTURE_COLOURS, MOVING, sheet)
     yield from html_page(out.look.text(long.title), _parts(long, out, date), style)

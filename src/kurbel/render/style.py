@@ -95,10 +95,12 @@ h1{font-size:18pt}h2{margin:.8rem 0 .4rem}h3{margin-top:.8rem}
 a{color:inherit;text-decoration:none}}
 """
 PAIRS = """\
-@media screen{main{max-width:96rem}.pair{display:grid;grid-template-columns:1fr 1fr;gap:1.6rem}.pair>*{min-width:0}}
-@media screen and (max-width:66rem){.pair{grid-template-columns:1fr}}@media print{.pair{break-inside:avoid}}
+.pair{display:grid;grid-template-columns:1fr 1fr;gap:1.6rem}.pair>*{min-width:0}
+@media screen{main{max-width:96rem}}
+@media screen and (max-width:66rem){.pair{grid-template-columns:1fr}}
+@media print{.pair{gap:.7cm;clear:both}}
 """
-"""Of pictures of two machines side by side."""
+"""Of pictures of two machines side by side, which are printed on sheets that lie."""
 
 PICTURE = """\
 text{font-family:system-ui,"DejaVu Sans",sans-serif;font-size:10px}.h{font-size:13px;font-weight:600}

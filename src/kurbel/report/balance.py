@@ -14,6 +14,7 @@ from kurbel.notes.left_out import (
 from kurbel.notes.warnings import (
     pin_warnings,
 )
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
@@ -208,8 +209,9 @@ def _order_of_vector(
     if of_book is not None:
         values[f"{name}_forward_book"] = abs(complex(of_book.of(order)[0])) * square
         values[f"{name}_backward_book"] = abs(complex(of_book.of(-order)[0])) * square
-    values[f"{name}_long"] = abs(f) + abs(g)
-    values[f"{name}_short"] = abs(abs(f) - abs(g))
+    longer = abs(f) + abs(g)
+    values[f"{name}_long"] = longer
+    values[f"{name}_short"] = float(unless_cancelled(abs(abs(f) - abs(g)), longer))
 
     # both circles meet in the middle of their directions, here from 0 to below 180 degrees
     middle = math.degrees(cmath.phase(f * g)) / 2

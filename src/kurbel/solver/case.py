@@ -151,7 +151,14 @@ class Case(NotebookView):
         Raises UsageError where nothing turns the machine, NoSolutionError where losses leave too little.
         """
         _ = self.effort.excess  # refuses a machine that cannot run
-        return _orders()(self.effort, orders)
+        harmonics = _orders()(self.effort, orders)
+        # those of the same orders are computed once
+        return self._harmonics.setdefault(tuple(harmonics.orders.tolist()), harmonics)
+
+    @cached_property
+    def _harmonics(self) -> dict[tuple[float, ...], MachineOrders]:
+        """Harmonics of the turning effort that are in use, by their orders."""
+        return {}
 
     @cached_property
     def torsion(self) -> ShaftVibration:

@@ -456,8 +456,11 @@ class PistonGas:
             for end, _ in self.ends:
                 self.starts.append(Angles(end.starts.machine, end.starts.degrees + turn))
         self.clearance_volumes: list[Number] = []
-        for chamber, area in zip((indicator.head_end, indicator.crank_end), self.areas):
+        chambers = (indicator.head_end, indicator.crank_end)
+        for chamber, pressure, area in zip(chambers, (self.head, self.crank), self.areas):
             clearance = getattr(chamber, "clearance", None)
+            if pressure is not None and pressure.traced:  # by the smallest volume of a file, say
+                clearance = pressure.trace.clearance
             volume = 0.0 if clearance is None else clearance * area * self.stroke
             self.clearance_volumes.append(volume)
 

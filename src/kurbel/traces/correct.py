@@ -47,6 +47,23 @@ class KnownLevel(Record):
     pressure: float = field("pressure", "Pressure there, gauge or absolute as in `pressures`")
 
 
+class Strokes(NamedTuple):
+    """What a trace has been measured over instead of angles.
+
+    kind: volume or displacement; swept, smallest: range and smallest of its column, in m³ or m.
+    """
+
+    kind: str
+    swept: float
+    smallest: float
+
+
+def _placed() -> "Callable[[Trace, Setting], Trace]":
+    from kurbel.traces.strokes import placed
+
+    return placed
+
+
 @dataclass(frozen=True, eq=False)
 class Trace(Indivisible):
     """A measured trace over one whole cycle, or over many.
@@ -61,7 +78,8 @@ class Trace(Indivisible):
     known, as a text at the dead centre where the compression begins, the ambient; against: the file counts its angles
     against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the figures of the
     file were multiplied by; clock: how times became its angles; suction, discharge: pressures in
-    Pa in the lines of a compressor, where they are known; heat: by what its heat release is computed.
+    Pa in the lines of a compressor, where they are known; heat: by what its heat release is computed; strokes: what it
+    was measured over instead of angles, which then are those of an infinite rod until it is in its chamber.
     Raises RuleError for samples that are no such cycle.
     """
 
@@ -81,6 +99,7 @@ class Trace(Indivisible):
     suction: float | None = None
     discharge: float | None = None
     heat: "HeatLaw | None" = None
+    strokes: Strokes | None = None
     burns: ClassVar[bool] = False
     by_steam: ClassVar[bool] = False
     compresses: ClassVar[bool] = False
@@ -161,6 +180,12 @@ class Trace(Indivisible):
             return replace(self, angles=self.angles * (period / self.period))
         angles = np.concatenate((self.angles[:-1], self.angles + self.period))
         return replace(self, angles=angles, samples=joined_in_pairs(self.samples), completed=True)
+
+    def in_chamber(self, setting: Setting) -> "Trace":
+        """Return it over whole cycles of its chamber; what was measured over the stroke gets its crank angles."""
+        if self.strokes is None:
+            return self.over(setting.cycle)
+        return _placed()(self, setting)
 
     def shift(self, setting: Setting) -> float:
         """Return the angle in degrees that is added to its angles to get crank angles."""

@@ -43,8 +43,8 @@ class TracePressure:
     by_stroke: ClassVar[Literal[False]] = False
 
     def __init__(self, trace: Trace, setting: Setting) -> None:
-        self.trace, self.setting = trace.over(setting.cycle), setting
-        self.angles = self.trace.angles + trace.shift(setting)
+        self.trace, self.setting = trace.in_chamber(setting), setting
+        self.angles = self.trace.angles + self.trace.shift(setting)
         self.each = corrected(self.trace, setting)
         self.pressures = np.asarray(self.each.mean(axis=0))
         self._p, widths = self.pressures - setting.base, np.diff(self.angles)

@@ -51,7 +51,8 @@ class Maker:
             return tuple(map(self.made, value))
         if not isinstance(value, ReadMapping):
             return value
-        values = {name: self.made(node) for name, node in value.values.items()}
+        completed = value.form.record.completed(value.values, self.made)
+        values = {name: self.made(node) for name, node in completed.items()}
         try:
             value.made = self._record(value.form, values)
         except ArithmeticError:

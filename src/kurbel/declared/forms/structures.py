@@ -104,7 +104,7 @@ class RecordForm(Form):
         """Read the keys of this record from a mapping that may also have keys of other records."""
         own_names = [name for name, key in self.keys.items() if not isinstance(key.form, Inline)]
         rest = {name: value for name, value in mapping.items() if name not in own_names}
-        required_names = required(self.keys)
+        required_names = required(self.keys, mapping)
         values: dict[str, object] = {}
         for name, key in self.keys.items():
             form = key.form
@@ -235,6 +235,10 @@ class ReadMapping:
         self.path = path
         self.values = values
         self.made: Any = None
+
+    def with_value(self, name: str, value: object) -> "ReadMapping":
+        """Return it with another value of a key."""
+        return ReadMapping(self.form, self.mapping, self.path, {**self.values, name: value})
 
 
 def no_mapping(form: Form, value: Node) -> NoReturn:

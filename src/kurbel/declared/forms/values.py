@@ -462,6 +462,38 @@ FILE_PATH = Text("the name of a file", _existing, schema={"type": "string", "min
 _FAULTS_SHOWN = 3  # of one list; the others usually have the same cause, such as decimal commas
 
 
+class Ordinates(Form):
+    """A list of bare numbers, `[y, y, …]`; becomes a tuple of floats."""
+
+    shape = list
+    _least = 3
+    _most = 1000
+
+    def __init__(self) -> None:
+        schema: Schema = {
+            "type": "array",
+            "items": {"type": "number"},
+            "minItems": self._least,
+            "maxItems": self._most,
+        }
+        sample = "[22.5, 31, 28.5]"
+        super().__init__(f"a list of numbers, such as {sample}", sample, f"`{sample}`", schema)
+
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
+        """Read the numbers, and report each that is none."""
+        if not isinstance(value, list):
+            refused(f"expected {self.expected}, got {node_kind(value)}")
+        if not self._least <= len(value) <= self._most:
+            refused(f"{len(value)} numbers; from {self._least} to {self._most} are taken")
+        numbers: list[float] = []
+        for index, item in enumerate(value):
+            try:
+                numbers.append(parse_number(one_line(item, "a number")))
+            except RuleError as error:
+                reading.refuse((*path, index), error)
+        return tuple(numbers) if len(numbers) == len(value) else REFUSED
+
+
 class Points(Form):
     """A list of pairs of bare numbers, `[[x, y], …]`, or of triples; becomes a list of tuples of floats.
 
