@@ -48,6 +48,8 @@ _DOUBLINGS, _TRIALS = 30, 20
 """Largest numbers of doublings in the search for a flywheel that turns, and of secant steps for one with a given δ."""
 _CLOSE = 1e-13
 """Relative tolerance of δ in the search for the flywheel that gives it."""
+_IDLE = 0.01
+"""Share of what δ misses: a step of the search that gains less gains nothing."""
 
 
 def _coupling_torque() -> type[CouplingTorque]:
@@ -655,6 +657,11 @@ class MachineTurning(Results):
             delta = self._delta_with(tried)
             left = self._wanted / delta - 1 if delta else math.inf
             if tried == inertia or not math.isfinite(left):
+                return None
+            # where the load alone holds the speed of a rigid shaft, a quarter of the flywheel changes next to nothing
+            is_bound = tried in (inertia / 4, 4 * inertia)
+            changes_nothing = abs(left - missed) < _IDLE * abs(left)
+            if is_bound and changes_nothing and self.machine.coupling is None:
                 return None
             rise = (left - missed) / (tried - inertia)
             slope = rise if rise > 0 else 1 / tried
