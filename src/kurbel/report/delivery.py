@@ -12,7 +12,7 @@ from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.compressors import CompressorStage
 from kurbel.solver.chapters.delivery import MachineDelivery
-from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.frame import CommandReport, Subject
 from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
 
@@ -87,7 +87,7 @@ def _delivery_notes(case: Case) -> Iterator[str]:
         yield "Compressors are those of the ideal card: valves without losses, no leakage, no heat from the walls."
 
 
-DELIVERY = Functions("Delivery", _delivering, _delivery_notes)
+DELIVERY = CommandReport("Delivery", _delivering, _delivery_notes)
 
 
 def delivery_left_out(delivery: MachineDelivery) -> Iterator[LeftOut]:

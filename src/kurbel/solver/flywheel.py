@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 RIGID_ABOVE = 100.0
-"""Natural order above which a coupling counts as rigid: it amplifies the first harmonics by no more than 1 in 10⁴."""
+"""Natural order above which a coupling counts as rigid: it amplifies the order ν by (ν/n_e)², 1 in 10⁴ for the first."""
 _MISSED = 1e-3
 """Relative deviation from the required δ above which there is a warning."""
 _LARGEST_EXPONENT = 709.7
@@ -375,7 +375,7 @@ class MachineTurning(Results):
     GD2 = value(
         "GD²",
         "gd2",
-        "Flywheel effect GD² = 4gJ, weight times diameter squared",
+        "Flywheel effect GD² = 4J, mass times diameter squared; in kgf m² the same number",
         lambda turning: None if turning.J is None else 4 * turning.J,
         plain="GD2",
     )
@@ -389,7 +389,7 @@ class MachineTurning(Results):
     GD2_needed = value(
         "GD²_δ",
         "gd2",
-        "The same as flywheel effect GD² = 4gJ",
+        "The same as flywheel effect GD² = 4J_δ",
         lambda turning: None if turning.J_needed is None else 4 * turning.J_needed,
         plain="GD2_delta",
         unless=lambda turning: turning.is_the_needed,
