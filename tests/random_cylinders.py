@@ -41,7 +41,9 @@ def random_cylinder(random: np.random.Generator, friction: bool) -> CylinderForc
         60 * speed,
         pistons=(
             Piston(
-                bore, 0.0, bore / 5, Indicator(head, random_chamber(random) if crank_end else None)
+                bore,
+                crank_end_rod=bore / 5,
+                indicator=Indicator(head, random_chamber(random) if crank_end else None),
             ),
         ),
         masses=Masses(mass, random_rod(random, mass / 2, crank / lam)),

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kurbel.declared.unit_systems import messages_in
-from kurbel.errors import KurbelError
+from kurbel.declared.unit_systems import SYSTEMS, messages_in
+from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine_file.reader import machine_of
 from kurbel.numerics.extreme import Extreme
@@ -74,11 +74,14 @@ def draw(
 ) -> Drawing:
     """Return pictures of a machine, by the words of `kurbel plot --list`; without names the most informative picture.
 
-    angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that does not exist.
+    units: `si`, `metric`, `technical` or `imperial`; angles: crank angles in degrees at which a mechanism is drawn.
+    Raises UsageError for a picture or a system of units that does not exist.
     """
     from kurbel.pictures.picture_source import PictureOptions
     from kurbel.pictures.pictures import pictures
 
+    if units not in SYSTEMS:
+        raise UsageError(f"units: there is no '{units}'; there are {', '.join(SYSTEMS)}")
     with messages_in(units):
         return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
 

@@ -41,7 +41,7 @@ friction: {crank_pin: 0.1, crank_pin_diameter: 100 mm, journals: 0.1, journal_di
 
 def forces_of(path: Path) -> Report:
     case = Case(load(str(path)))
-    end = COMMANDS["forces"].functions.end(case)
+    end = COMMANDS["forces"].functions.last_angle(case)
     return report_of(case, Frame("forces", stepped(10.0, end), None, "metric"))
 
 

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 import math
 
 import pytest
@@ -36,3 +37,15 @@ def test_csv_over_the_crank_angle_and_by_place() -> None:
     assert [(row["part"], row["place"]) for row in rows] == PLACES * 3
     assert rows[0]["compression_Pa"] == ""
     assert float(rows[3]["torsion_Pa"]) > 0
+
+
+def test_key_values_by_name_are_those_of_throws() -> None:
+    """The parts have one name, whether all is printed or single key values are."""
+    engine = str(CONFIGS["four-throws"])
+    whole = json.loads(run("stress", engine, "-f", "json").stdout)
+    chosen = json.loads(
+        run("stress", engine, "-f", "json", "--key-values", "safety_pin_min").stdout
+    )
+    names = [throw["name"] for throw in whole["throws"]]
+    assert [throw["name"] for throw in chosen["throws"]] == names
+    assert "cylinders" not in chosen

@@ -217,6 +217,9 @@ def test_a_figure_prints_as_people_read_it() -> None:
 
 WRONG: dict[str, Callable[[], object]] = {
     "'overrides' crank=4: crank: 4 has no unit": lambda: kurbel.load(WATERWORKS, ["crank=4"]),
+    "units: there is no 'inch'; there are si, metric, technical, imperial": lambda: kurbel.draw(
+        solved("waterworks"), units="inch"
+    ),
     "'overrides' crank: write KEY=VALUE": lambda: kurbel.loads("{crank: 1 m}", "m", ["crank"]),
     "'case' x: no such load case": lambda: kurbel.load(WATERWORKS, case="x"),
     "'columns': no key value 'zzz'": lambda: kurbel.sweep(WATERWORKS, {"bore": [0.4]}, "zzz"),
@@ -285,6 +288,12 @@ def test_ranges_and_machines_in_other_units_are_doubted() -> None:
     machine = kurbel.Machine((kurbel.Cylinder(kurbel.SliderCrank(0.4, 2.0), pistons=(piston,)),))
     with pytest.warns(UserWarning, match="numbers are in SI: .*a bore of 450 m is beyond"):
         kurbel.solve(machine)
+
+
+def test_orders_may_be_a_list() -> None:
+    case = solved("coupled-blower")
+    assert case.harmonics([1, 2]).orders.tolist() == [1.0, 2.0]
+    assert case.harmonics([1, 2]) is case.harmonics(np.array([1.0, 2.0]))
 
 
 def test_results_are_shown_in_a_line() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 import kurbel as api
 from command import run
-from kurbel.report.delivery import delivery_left_out
+from kurbel.report.delivery import delivery_left_out, delivery_warnings
 from kurbel.solver.chapters.delivery import Delivery
 from representative import CONFIGS
 
@@ -667,6 +667,23 @@ def test_late_valves_do_not_spare_the_suction_pipe() -> None:
         pump = pump_of(text)
         answers.append([pump[id].value for id in ("npsh_available", "acceleration_head_max")])
     assert answers[1] == pytest.approx(answers[0], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("lift", "height"),
+    [(1.5, "the pump is 1500 mm above the liquid"), (-2, "the liquid is 2000 mm above the pump")],
+)
+def test_a_liquid_that_boils_where_the_pipe_begins_needs_a_height(lift: float, height: str) -> None:
+    """By hand: 0.5 bar below its vapour pressure; behind a vessel, without friction, (0.5 bar)/(ρ g) = 5.1088 m."""
+    pipe = f"{{length: 2 m, diameter: 50 mm, lift: {lift} m, pressure: 0.5 bar, vessel: {{volume: 9 l}}}}"
+    liquid = "{density: 998 kg/m3, vapour_pressure: 1 bar}"
+    text = machine("one single-acting", 5, f"pump: {{liquid: {liquid}, suction_pipe: {pipe}}}")
+    delivery = api.solve(api.loads(text)).delivery
+    head = -0.5e5 / (998 * 9.80665)
+    assert delivery.pump is not None
+    assert delivery.pump["npsh_available"].value == pytest.approx(head - lift, rel=1e-12)
+    (warning,) = delivery_warnings(delivery)
+    assert warning.startswith(f"{height}, but must be 5108.8 mm above it")
 
 
 def test_what_is_assumed_of_a_pump_is_listed() -> None:

@@ -22,10 +22,20 @@ from turning_machines import of_points
 TWO_CRANKS = CONFIGS["waterworks-two-cranks"]
 ETA = 0.9
 
-STEAM = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
+STEAM = Piston(
+    0.45, head_end_rod=0.075, crank_end_rod=0.1, indicator=Indicator(STEAM_CARD, STEAM_CARD)
+)
 WATER = Constant.from_keys(expansion=-0.45 * AT, compression=5.4 * AT)
-PUMP = Piston(0.285, 0.0, 0.075, Indicator(WATER, WATER), "pump")
-IDLE = Piston(0.1, 0.0, 0.0, Indicator(constant_pressure(3e5)), "idle")
+PUMP = Piston(
+    0.285, head_end_rod=0.0, crank_end_rod=0.075, indicator=Indicator(WATER, WATER), name="pump"
+)
+IDLE = Piston(
+    0.1,
+    head_end_rod=0.0,
+    crank_end_rod=0.0,
+    indicator=Indicator(constant_pressure(3e5)),
+    name="idle",
+)
 SPRING = Card.from_keys(
     unit=(1e5, 1),
     expansion=[(0, 31.7), (0.3, 9.1), (1, 2.3)],

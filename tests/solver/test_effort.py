@@ -23,8 +23,16 @@ from machines import STEAM_CARD, constant_pressure
 from representative import CONFIGS
 from turning_machines import of_points
 
-STEAM = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
-PUMP = Piston(0.285, 0.0, 0.075, Indicator(constant_pressure(4e5), constant_pressure(4e5)), "pump")
+STEAM = Piston(
+    0.45, head_end_rod=0.075, crank_end_rod=0.1, indicator=Indicator(STEAM_CARD, STEAM_CARD)
+)
+PUMP = Piston(
+    0.285,
+    head_end_rod=0.0,
+    crank_end_rod=0.075,
+    indicator=Indicator(constant_pressure(4e5), constant_pressure(4e5)),
+    name="pump",
+)
 ENGINE = Cylinder(SliderCrank(0.4, 2.0), pistons=(STEAM,), masses=Masses(826.0))
 ANGLES = np.array([0.0, 17.3, 90.0, 123.4, 180.0, 271.0, 359.0])
 

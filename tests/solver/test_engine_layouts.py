@@ -527,7 +527,12 @@ SLIPS: tuple[tuple[str, Callable[..., Any], str, str], ...] = (
     ("v-link", body_of(State, "_rod_tangential"), "self.knuckle_inertia_torque", "0.0"),
     ("v-link", body_of(State, "_knuckle_inertia_on_pin"), "self._knuckle_", "0 * self._knuckle_"),
     # the side force that links take from the master's guide, and their loads on its crank pin
-    ("v-link", body_of(State, "_links_side"), "self._side(self._moment_of_links)", "0.0"),
+    (
+        "v-link",
+        body_of(State, "_side_force_of_links"),
+        "self._side_force_of(self._moment_of_links)",
+        "0.0",
+    ),
     ("v-link", MasterPin._frames, "(self._forces, *self._links)", "(self._forces,)"),
     # the force of a wobbler along the line of centres; its cylinder turned the wrong way; x″ without x′²
     ("wobbler", OscillatingCylinder.radial, "angle.cos * cos + angle.sin * sin", "angle.cos"),

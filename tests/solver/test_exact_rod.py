@@ -107,7 +107,14 @@ def test_free_body_of_the_rod(friction: Friction | None, offset: float) -> None:
     forces = one_cylinder(
         SliderCrank(CRANK, LENGTH, offset),
         RPM,
-        pistons=(Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD)),),
+        pistons=(
+            Piston(
+                0.45,
+                head_end_rod=0.075,
+                crank_end_rod=0.1,
+                indicator=Indicator(STEAM_CARD, STEAM_CARD),
+            ),
+        ),
         masses=Masses(parts, ConnectingRod(mass, center_of_gravity=at, inertia=inertia)),
         friction=friction,
         inclination=20.0,

@@ -30,7 +30,13 @@ MECHANISM = SliderCrank(0.15, 0.66)
 def engine(
     head: Any = CARD, crank: Any = None, mechanism: Any = MECHANISM, rpm: float = 300, **more: Any
 ) -> CylinderForces:
-    own = Cylinder(mechanism, pistons=(Piston(0.22, 0.0, 0.06, Indicator(head, crank)),), **more)
+    own = Cylinder(
+        mechanism,
+        pistons=(
+            Piston(0.22, head_end_rod=0.0, crank_end_rod=0.06, indicator=Indicator(head, crank)),
+        ),
+        **more,
+    )
     return CylinderForces(Machine((own,), speed=rpm / 60, cycle="four-stroke"), own)
 
 

@@ -27,7 +27,9 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 def steam(**more: Any) -> Cylinder:
-    card = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
+    card = Piston(
+        0.45, head_end_rod=0.075, crank_end_rod=0.1, indicator=Indicator(STEAM_CARD, STEAM_CARD)
+    )
     return Cylinder(SliderCrank(0.4, 2.0), **{"pistons": (card,), "masses": Masses(826.0), **more})
 
 

@@ -43,7 +43,9 @@ def machines(draw: st.DrawFn) -> CylinderForces:
     return one_cylinder(
         SliderCrank(0.3, 0.3 / lam, offset),
         draw(st.floats(0, 900)),
-        pistons=(Piston(0.25, 0.03, 0.05, Indicator(head, crank)),),
+        pistons=(
+            Piston(0.25, head_end_rod=0.03, crank_end_rod=0.05, indicator=Indicator(head, crank)),
+        ),
         masses=Masses(draw(st.floats(0, 300))),
         friction=friction,
         inclination=draw(st.sampled_from([None, 0.0, 30.0, 90.0])),

@@ -155,6 +155,19 @@ def test_a_load_that_drives_loses_and_one_that_is_moved_costs_more() -> None:
         assert pytest.approx(expected, rel=1e-12) == with_losses.flywheel.at(ANGLES).M, name
 
 
+@pytest.mark.parametrize("count", [3, 6])
+@pytest.mark.parametrize("force", ["1 kN", "{spring: 3 N/mm, preload: 50 N}"])
+def test_loads_that_give_back_their_work_leave_no_mean_torque(count: int, force: str) -> None:
+    """Cranks at equal angles: of torques of 80 N m a thousandth is left, its mean is 0 and not their rounding."""
+    angles = [f"{360 * number / count} deg" for number in range(count)]
+    cranks = f"  count: {count}\n  crank_positions: [{', '.join(angles)}]\n"
+    cylinder = f"  each: {{stroke: 160 mm, rod: 400 mm, force: {force}}}\n"
+    machine = case(f"speed: 60 rpm\ncylinders:\n{cranks}{cylinder}")
+    assert machine["M_max"].value > 0
+    assert machine["M_mean"].value == 0
+    assert machine["W"].value == 0
+
+
 def test_a_hanging_weight_is_a_constant_force() -> None:
     """As the weight of a mass on a vertical slide without its inertia: m g along the line, at any speed."""
     weight = case(f"{SHAPE}masses: {{other: 5 kg}}\ninclination: 90 deg\n").cylinders[0]

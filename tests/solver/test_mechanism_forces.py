@@ -36,7 +36,9 @@ TURNING: dict[str, Mechanism] = {
     "four-bar, slow back": FourBar(0.04, 0.08, 0.15, 0.15),
     "parallel crank": ParallelCrank(0.3, 2.0, 140.0),
 }
-STEAM = Piston(0.2, 0.0, 0.03, Indicator(STEAM_CARD, STEAM_CARD))
+STEAM = Piston(
+    0.2, head_end_rod=0.0, crank_end_rod=0.03, indicator=Indicator(STEAM_CARD, STEAM_CARD)
+)
 DENSE = np.arange(0.5, 360.0, 1.0)
 
 

@@ -35,7 +35,7 @@ def test_sound_forces_of_random_cylinders_leave_nothing_open() -> None:
 
 def wrong_side(state: State) -> Any:
     sin_psi, cos_psi = state.rod_angle
-    return cos_psi - sin_psi * (state.guide_side * state.direction * state.drive.crosshead_friction)
+    return cos_psi - sin_psi * (state.guide_sign * state.direction * state.drive.crosshead_friction)
 
 
 def wrong_weight(state: State) -> Any:

@@ -38,7 +38,11 @@ RPM = 60.0
 OMEGA = 2 * math.pi
 CYLINDER = Cylinder(
     SliderCrank(0.4, 2.0),
-    pistons=(Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD)),),
+    pistons=(
+        Piston(
+            0.45, head_end_rod=0.075, crank_end_rod=0.1, indicator=Indicator(STEAM_CARD, STEAM_CARD)
+        ),
+    ),
     masses=Masses(826.0),
 )
 
@@ -158,6 +162,31 @@ def rectangle_above_zero() -> list[tuple[float, float]]:
 
 
 WISHED = [(None, 1.0), (Load(slip=0.02), 1.0), (Load(slip=0.02), 0.85), (None, 0.7)]
+
+
+@pytest.mark.parametrize(("slip", "wish"), [("1e-6", "5 %"), ("0.01", "1/50")])
+def test_where_the_load_holds_the_speed_the_search_for_a_flywheel_ends_soon(
+    slip: str, wish: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a stiff load δ is at most about ΔM s/M, whatever the flywheel: more cannot be had by less inertia."""
+    machine = loads(
+        "{speed: 50 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, masses: {piston: 500 kg}, indicator: {head_end: "
+        "{constant: {expansion: 5 bar, compression: 0 bar}}, crank_end: mirrored}, "
+        f"flywheel: {{fluctuation: {wish}}}, load: {{slip: {slip}}}}}"
+    )
+    tried: list[float] = []
+    delta_with = MachineTurning._delta_with
+
+    def noted(turning: MachineTurning, flywheel: float) -> float:
+        tried.append(delta_with(turning, flywheel))
+        return tried[-1]
+
+    monkeypatch.setattr(MachineTurning, "_delta_with", noted)
+    turning = Case(machine).flywheel
+    assert turning.J_exact is None
+    assert turning._wanted is not None
+    assert max(tried) < turning._wanted
+    assert len(tried) < 8
 
 
 @pytest.mark.parametrize(("load", "efficiency"), few(WISHED, [WISHED[0], WISHED[2]]))

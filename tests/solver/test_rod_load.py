@@ -161,6 +161,15 @@ def test_a_pump_gets_no_rod_load_but_by_name() -> None:
         assert forces.rod_compression_max.value == pytest.approx(largest, rel=1e-12)
 
 
+def test_a_rod_with_another_load_has_no_rod_load_of_the_gas_alone() -> None:
+    """The definition of API 618 has gas, inertia and weight; a spring on the rod it does not know."""
+    for load in ("force: {spring: 5 N/mm, preload: 1 kN}", "ram_force: {work: 1 kN, return: 1 kN}"):
+        (forces,) = Case(loads(f"{ALWAYS_PRESSED}{load}\n")).cylinders
+        assert forces.no_compressor
+        assert not any("rod load" in warning for warning in cylinder_warnings(forces))
+    assert not Case(loads(ALWAYS_PRESSED)).cylinders[0].no_compressor
+
+
 def test_load_cases_of_a_pump_have_no_rod_load_either() -> None:
     cases = "cases: [{name: slow, set: {speed: 30 rpm}}]\n"
     for text, is_compressor in ((PUMP, False), (ALWAYS_PRESSED, True)):

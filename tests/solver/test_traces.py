@@ -57,7 +57,7 @@ def trace(step: float, zero: float = 0.0, period: float = 360.0, closed: bool = 
 def solved(
     head: Any, crank: Any = None, cycle: str = "two-stroke", mechanism: Any = CRANK, **more: Any
 ) -> CylinderForces:
-    piston = Piston(0.3, 0.0, 0.08, Indicator(head, crank))
+    piston = Piston(0.3, head_end_rod=0.0, crank_end_rod=0.08, indicator=Indicator(head, crank))
     own = Cylinder(mechanism, pistons=(piston,), **more)
     return CylinderForces(Machine((own,), speed=3.0, cycle=cycle), own)
 

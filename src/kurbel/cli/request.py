@@ -94,7 +94,7 @@ def print_report(
     if cycle is not None:
         case = _one_cycle(case, cycle)
     functions = COMMANDS[command].functions
-    end = functions.end(case)
+    end = functions.last_angle(case)
     rows: Sequence[float] | Callable[[Subject], Sequence[float]]
     if where is not None:
         rows = _rows_where(where, command, end)

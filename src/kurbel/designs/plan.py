@@ -195,6 +195,10 @@ def _numbers(
     first_unit = next(filter(None, units), "")
     if has_step and units[-1] == step_unit(first_unit):
         units[-1] = first_unit
+    if set(map(normal_unit, units)) == {"ft", "in"}:
+        numbers = list(map(_in_inches, numbers, units))
+        units = ["in"] * count
+        first_unit = "in"
     different_units = {normal_unit(unit): unit for unit in reversed(units) if unit}
     if len(different_units) > 1:
         in_units = " and ".join(sorted(different_units.values()))
@@ -203,6 +207,13 @@ def _numbers(
         if abs(number.value) > _LARGEST:
             raise _refused(text, f"{text_in_one_line(number.text)} is too large to compute with")
     return numbers, first_unit
+
+
+def _in_inches(number: _WrittenNumber, unit: str) -> _WrittenNumber:
+    """Return a number of feet or of inches in inches."""
+    if normal_unit(unit) == "in":
+        return number
+    return _WrittenNumber(f"{12 * number.value:.15g}", 12 * number.value)
 
 
 def _range(text: str, written: str) -> tuple[tuple[float, ...], str]:

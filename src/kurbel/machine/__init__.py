@@ -43,9 +43,10 @@ if TYPE_CHECKING:
         Locomotive,
         SharedCounterweights,
     )
+    from kurbel.machine.drawn_gas import Gas
     from kurbel.machine.known_effort import KnownEffort
     from kurbel.machine.oil_film import OilFilms
-    from kurbel.machine.pumped import Gas, Pump
+    from kurbel.machine.pumped import Pump
     from kurbel.machine.several import EqualCylinders
     from kurbel.machine.shaft_line import ShaftLine, ShaftPart
     from kurbel.machine.shaft_side import Coupling, Flywheel, KnownDiagram, Load
@@ -120,7 +121,7 @@ def _shaft_part() -> type[ShaftPart]:
 
 
 def _gas() -> type[Gas]:
-    from kurbel.machine.pumped import Gas
+    from kurbel.machine.drawn_gas import Gas
 
     return Gas
 

@@ -19,7 +19,7 @@ from kurbel.numerics.arithmetic import total
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
-    from kurbel.machine.pumped import Gas
+    from kurbel.machine.drawn_gas import Gas
 
 
 class ConnectingRod(Record):
@@ -410,7 +410,7 @@ class RodPoint(Record):
 
 
 def _gas() -> type[Gas]:
-    from kurbel.machine.pumped import Gas
+    from kurbel.machine.drawn_gas import Gas
 
     return Gas
 
@@ -434,18 +434,6 @@ class Piston(Record):
         above=0,
         also=("bohrung", "cylinder_diameter", "piston_diameter", "bore_diameter"),
     )
-    displacement: float | None = field(
-        "volume",
-        "Volume that the whole bore sweeps, π/4 d² s, of one cylinder: gives the bore, or with the bore the stroke, and "
-        "is compared where both are given",
-        "V_s",
-        above=0,
-        instead="bore",
-        compared=True,
-        absent="by bore and stroke",
-        example="500 cm3",
-        also=("hubraum", "capacity", "cubic_capacity", "swept_volume", "engine_displacement"),
-    )
     head_end_rod: float = field(
         "length", "Diameter of the rod through the head end", default=0.0, least=0
     )
@@ -465,6 +453,18 @@ class Piston(Record):
     name: str = field(str, "Name of the piston", default="piston", absent="piston")
     gas: Gas | None = field(_gas, "Gas that the piston draws in", absent="that of the machine")
     lever_ratio: float = 1.0
+    displacement: float | None = field(
+        "volume",
+        "Volume that the whole bore sweeps, π/4 d² s, of one cylinder: gives the bore, or with the bore the stroke, and "
+        "is compared where both are given",
+        "V_s",
+        above=0,
+        instead="bore",
+        compared=True,
+        absent="by bore and stroke",
+        example="500 cm3",
+        also=("hubraum", "capacity", "cubic_capacity", "swept_volume", "engine_displacement"),
+    )
 
     def rules(self) -> Iterator[Rule]:
         message = "{head_end_rod} is no thinner than the bore ({bore})"

@@ -13,58 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Record, Rule, field
 from kurbel.machine.indicator import Card, CardLine, Chamber
 from kurbel.machine.parts import Piston
 
-GAS_CONSTANT = 8.31446261815324
-"""J/(mol K)."""
 WATER = 1000.0, 2339.0
 """Density in kg/m³ of water, and its vapour pressure in Pa at 20 °C."""
-
-
-class Gas(Record):
-    """The gas that a compressor draws in, as an ideal one; what is None is left out, or as in the whole machine."""
-
-    inlet_temperature: float = field(
-        "temperature",
-        "Temperature of the gas where it is drawn in",
-        "T_1",
-        above=0,
-        example="20 °C",
-    )
-    gas_constant: float | None = field(
-        "gas_constant",
-        "Specific gas constant; or give `molar_mass`",
-        "R",
-        above=0,
-        absent="that of the machine's `gas`, else mass flows left out",
-        example="287 J/(kg K)",
-    )
-    _molar_mass = alternative(
-        "molar_mass",
-        "Molar mass, which gives the gas constant",
-        "M",
-        above=0,
-        instead="gas_constant",
-        gives=lambda values: {"gas_constant": GAS_CONSTANT / values["molar_mass"]},
-    )
-    isentropic_exponent: float | None = field(
-        "ratio",
-        "Exponent of the compression without heat, c_p/c_v",
-        "κ",
-        above=1,
-        most=10,
-        absent="that of the machine's `gas`, else isentropic power left out",
-        example="1.4",
-    )
-
-    @property
-    def mass_of_mole(self) -> float | None:
-        """Its molar mass in kg/mol."""
-        if self.gas_constant is None:
-            return None
-        return GAS_CONSTANT / self.gas_constant
 
 
 class Liquid(Record):
@@ -108,7 +62,8 @@ class Liquid(Record):
         rise = np.maximum(back.pressures[0] - outward.pressures[0], 0.0)
         lost: Any = rise / self.bulk_modulus
         c = 0.0 if card.clearance is None else card.clearance
-        rest = np.maximum(1 - lost, np.finfo(float).tiny)
+        # if it is compressed over the whole stroke, neither valve opens: z_s = 1
+        rest = np.maximum(np.maximum(1 - lost, c * lost), np.finfo(float).tiny)
         return c * lost / rest, 1 - (1 + c) * lost
 
     def compressed(self, piston: Piston) -> Piston:
@@ -245,5 +200,9 @@ class Pump(Record):
                     "and nothing is delivered"
                 )
                 numbers = {"K": self.liquid.bulk_modulus, "name": piston.name}
+                clearance = getattr(card, "clearance", None)
+                if clearance is not None:
+                    message = f"{message}; the clearance is {{c}} times the stroke volume"
+                    numbers["c"] = clearance
                 path = ("pump", "liquid", "bulk_modulus")
                 yield Rule(path, fractions[1] <= 0, message, numbers)

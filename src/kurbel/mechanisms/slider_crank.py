@@ -129,7 +129,7 @@ ROD_OFFERS: tuple[Offer, ...] = (
     _book(
         "c",
         "velocity",
-        "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)",
+        "Velocity v (sin φ + ½ λ sin 2φ) (B 25)",
         formulas.first_order_velocity,
         omega=1,
     ),
@@ -275,10 +275,9 @@ class SliderCrank(Mechanism):
         """Return φ_i with sin φ_i = e/(L+R) and φ_o = 180° + arcsin(e/(L−R)), in degrees."""
         if self.straight:
             return 0.0, 180.0
-        outer, inner = self._reaches
-        return bearing(self.offset / self.rod, outer), 180.0 + bearing(
-            self.offset / self.rod, inner
-        )
+        reach_at_inner, reach_at_outer = self._reaches
+        rise = self.offset / self.rod
+        return bearing(rise, reach_at_inner), 180.0 + bearing(rise, reach_at_outer)
 
     def rod_angle(self, angle: CrankAngle) -> tuple[Number, Number]:
         """Return (sin ψ, cos ψ) with sin ψ = (R sin φ − e)/L."""
@@ -289,13 +288,15 @@ class SliderCrank(Mechanism):
             return lam * angle.sin, sqrt(
                 angle.cos * angle.cos + gaps[0] * gaps[2] * (angle.sin * angle.sin)
             )
-        near = 1 + magnitude(angle.sin)
-        far = angle.cos * angle.cos / near
-        up = angle.sin >= 0
+        # 1 + |sin φ| and 1 − |sin φ|
+        sum_of_sin = 1 + magnitude(angle.sin)
+        rest_of_sin = angle.cos * angle.cos / sum_of_sin
+        is_above = angle.sin >= 0
         # 1 − sin ψ and 1 + sin ψ, each as a gap plus λ(1 ∓ sin φ), both positive
-        below_one = gaps[0] + lam * where(up, far, near)
-        above_minus_one = gaps[1] + lam * where(up, near, far)
-        return lam * angle.sin - self.offset / self.rod, sqrt(below_one) * sqrt(above_minus_one)
+        one_minus_sin_psi = gaps[0] + lam * where(is_above, rest_of_sin, sum_of_sin)
+        one_plus_sin_psi = gaps[1] + lam * where(is_above, sum_of_sin, rest_of_sin)
+        sin_psi = lam * angle.sin - self.offset / self.rod
+        return sin_psi, sqrt(one_minus_sin_psi) * sqrt(one_plus_sin_psi)
 
     def coupler_at(self, angle: CrankAngle) -> Turning:
         """Return the rotation of the rod, whose direction from crank pin to crosshead is −ψ."""

@@ -13,7 +13,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.machine import Cylinder, Machine
 
 if TYPE_CHECKING:
-    from kurbel.machine.pumped import Gas
+    from kurbel.machine.drawn_gas import Gas
 
 _STEEL = 7850.0
 """kg/m³"""

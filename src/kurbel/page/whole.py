@@ -203,7 +203,7 @@ class _CommandSections:
 def _report_of(command: Command, case: Case, system: str, step: float) -> Report:
     """Return the report of a command for people, with rows at even steps; raises as it does."""
     functions = command.functions
-    angles = stepped(step, functions.end(case), max(len(case.cylinders), 1))
+    angles = stepped(step, functions.last_angle(case), max(len(case.cylinders), 1))
     return for_people(functions.report(case, Frame(command.word, angles, None, system)))
 
 

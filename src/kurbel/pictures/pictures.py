@@ -340,7 +340,7 @@ def motion(source: Source) -> Iterator[Panel]:
 
 
 def approximations(source: Source) -> Iterator[Panel]:
-    """Error of the first-order formulas of the books (R 286, 289, 291) over the crank angle: approximation less exact
+    """Error of the first-order formulas of the books (R 286, B 25, R 291) over the crank angle: approximation less exact
     value, with the largest errors marked; it grows with the cube of λ."""
     wholes = {"x_error": "stroke", "c_error": "c_max", "b_error": "b_max"}
     for id in source.having(*wholes):

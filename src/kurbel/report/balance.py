@@ -19,7 +19,7 @@ from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.balance import MachineBalance
-from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.frame import CommandReport, Subject
 from kurbel.tables.shown import PlaceRow, Places
 
 ORDERS = by_id(
@@ -161,7 +161,7 @@ def _notes(case: Case) -> Iterator[str]:
         yield "M_roll is −M of kurbel flywheel, without the torque that accelerates the masses about the shaft."
 
 
-BALANCE = Functions(
+BALANCE = CommandReport(
     "Balancing",
     _balanced,
     _notes,

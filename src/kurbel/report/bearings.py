@@ -12,7 +12,7 @@ from kurbel.notes.machine_results import bearing_warnings, rods_on_pin
 from kurbel.notes.warnings import as_far_as_solved, of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.bearing import Bearing
-from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.frame import CommandReport, Subject
 from kurbel.tables.tables import joined_names
 
 
@@ -81,4 +81,4 @@ def _bearing_notes(case: Case) -> Iterator[str]:
         yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
 
 
-BEARINGS = Functions("Bearing loads", _loaded, _bearing_notes)
+BEARINGS = CommandReport("Bearing loads", _loaded, _bearing_notes)

@@ -1,7 +1,7 @@
 """Every command, one row each: the command line, exit statuses, the whole report, sweeps and the documents read it.
 
 A command on a machine has a function here: its docstring is the help of the command, and what it imports and returns,
-the `Functions` of a report, is loaded when the command is called. So help and completion need neither numpy nor the
+the `CommandReport` of a report, is loaded when the command is called. So help and completion need neither numpy nor the
 solver.
 """
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from kurbel.solver.case import Case
-    from kurbel.tables.frame import Frame, Functions, Subject
+    from kurbel.tables.frame import CommandReport, Frame, Subject
     from kurbel.tables.tables import Report
 
 BROKEN, NO_SOLUTION = 1, 3
@@ -20,7 +20,7 @@ BROKEN, NO_SOLUTION = 1, 3
 class Command(NamedTuple):
     """A command: its word, its summary in `kurbel --help`, and the statuses that only some commands return.
 
-    of: of a command that reports on a machine, the function in this file that has its help and returns its `Functions`;
+    of: of a command that reports on a machine, the function in this file that has its help and returns its `CommandReport`;
     section: place and title of its section in the whole report; over_angle: whether it has columns over the crank
     angle; options: those of `where` and `uncertainty` that it takes. first: ids of the columns, key values and tables
     that are shown on a terminal with too few lines for all; named: those of its key values that it never
@@ -30,7 +30,7 @@ class Command(NamedTuple):
 
     word: str
     summary: str
-    of: "Callable[[], Functions] | None" = None
+    of: "Callable[[], CommandReport] | None" = None
     statuses: tuple[int, ...] = ()
     section: tuple[int, str] = (0, "")
     over_angle: bool = True
@@ -46,7 +46,7 @@ class Command(NamedTuple):
         return self.section[1]
 
     @property
-    def functions(self) -> "Functions":
+    def functions(self) -> "CommandReport":
         """The functions that compute its results."""
         assert self.of, f"kurbel {self.word} does not report on a machine"
         return self.of()
@@ -70,7 +70,7 @@ def report_of(case: "Case", frame: "Frame") -> "Report":
     return COMMANDS[frame.command].functions.report(case, frame)
 
 
-def _motion() -> "Functions":
+def _motion() -> "CommandReport":
     """Print the motion of every cylinder's mechanism in FILE over one turn of the crank, and the key values.
 
     A sliding output has x, c, b, a swinging one theta, theta_dot, theta_ddot. Without a speed in FILE only the
@@ -81,7 +81,7 @@ def _motion() -> "Functions":
     return MOTION
 
 
-def _forces() -> "Functions":
+def _forces() -> "CommandReport":
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
 
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
@@ -92,7 +92,7 @@ def _forces() -> "Functions":
     return FORCES
 
 
-def _flywheel() -> "Functions":
+def _flywheel() -> "CommandReport":
     """Print turning effort, excess work, flywheel and speed fluctuation of the whole machine.
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the
@@ -104,7 +104,7 @@ def _flywheel() -> "Functions":
     return FLYWHEEL
 
 
-def _stress() -> "Functions":
+def _stress() -> "CommandReport":
     """Print the forces on the bearings of each throw of a crankshaft, and the stresses in pin, webs and journals.
 
     Stresses are listed for each place: in the dead centre under the full piston force, at the largest torque, and at
@@ -116,7 +116,7 @@ def _stress() -> "Functions":
     return STRESS
 
 
-def _bearings() -> "Functions":
+def _bearings() -> "CommandReport":
     """Print the loads on crank pins, crosshead pins and main bearings over the cycle.
 
     The direction of each load is given in the frames of throw, engine and rod; key values are the largest, smallest
@@ -128,7 +128,7 @@ def _bearings() -> "Functions":
     return BEARINGS
 
 
-def _balance() -> "Functions":
+def _balance() -> "CommandReport":
     """Print the unbalanced forces and moments on the frame of FILE, and the counterweights against them.
 
     F_x is the unbalanced force along the stroke line of cylinder 1, outward from the shaft, F_y that across it, 90
@@ -141,7 +141,7 @@ def _balance() -> "Functions":
     return BALANCE
 
 
-def _harmonics() -> "Functions":
+def _harmonics() -> "CommandReport":
     """Print the orders of the torque of every cylinder, and of the turning effort of the whole machine.
 
     Orders count periods per turn of the shaft, so that a four-stroke cycle has halves. They are integrated piece by
@@ -153,7 +153,7 @@ def _harmonics() -> "Functions":
     return HARMONICS
 
 
-def _torsion() -> "Functions":
+def _torsion() -> "CommandReport":
     """Print natural frequencies, Holzer's table, and critical speeds of the shaft line.
 
     Where damping and torques are given, also the steady vibration: torque and stress in every shaft segment at the
@@ -165,7 +165,7 @@ def _torsion() -> "Functions":
     return TORSION
 
 
-def _delivery() -> "Functions":
+def _delivery() -> "CommandReport":
     """Print what the pumps and compressors of FILE deliver.
 
     Of pumps the flow over the crank angle, its mean and fluctuation, and the effect of air vessels and pipes; of

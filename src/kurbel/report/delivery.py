@@ -12,7 +12,7 @@ from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.compressors import CompressorStage
 from kurbel.solver.chapters.delivery import MachineDelivery
-from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.frame import CommandReport, Subject
 from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
 
@@ -87,7 +87,7 @@ def _delivery_notes(case: Case) -> Iterator[str]:
         yield "Compressors are those of the ideal card: valves without losses, no leakage, no heat from the walls."
 
 
-DELIVERY = Functions("Delivery", _delivering, _delivery_notes)
+DELIVERY = CommandReport("Delivery", _delivering, _delivery_notes)
 
 
 def delivery_left_out(delivery: MachineDelivery) -> Iterator[LeftOut]:
@@ -174,10 +174,24 @@ def delivery_warnings(delivery: MachineDelivery) -> Iterator[str]:
     for id, name in (("vessel_swing", "delivery"), ("suction_vessel_swing", "suction")):
         if answers.get(id, 0.0) > _COARSE:
             yield f"the pressure in the {name} vessel swings by {answers[id]:.3g} of its mean; its pipe is not at rest"
+    yield from _boiling_warnings(delivery)
+
+
+def _boiling_warnings(delivery: MachineDelivery) -> Iterator[str]:
+    """Yield that the liquid boils in the suction pipe: the lift is too high, or the pressure in a flooded one too low."""
     pipe = delivery.machine.pump and delivery.machine.pump.suction_pipe
-    most = answers.get("suction_lift_max")
-    if pipe and pipe.lift is not None and most is not None and pipe.lift > most:
+    most = delivery.pump.answers.get("suction_lift_max") if delivery.pump else None
+    if not pipe or pipe.lift is None or most is None or pipe.lift <= most:
+        return
+    boiling = "the liquid begins to boil: the column breaks off"
+    if most >= 0:
         yield (
-            f"the suction pipe lifts by {show(pipe.lift, 'length')}, more than the {show(most, 'length')} at which the "
-            "liquid begins to boil: the column breaks off"
+            f"the suction pipe lifts by {show(pipe.lift, 'length')}, more than the {show(most, 'length')} at which "
+            f"{boiling}"
         )
+        return
+    if pipe.lift >= 0:
+        height = f"the pump is {show(pipe.lift, 'length')} above the liquid"
+    else:
+        height = f"the liquid is {show(-pipe.lift, 'length')} above the pump"
+    yield f"{height}, but must be {show(-most, 'length')} above it, since below that {boiling}"

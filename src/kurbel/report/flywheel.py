@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from kurbel.declared.unit_systems import show
 from kurbel.solver.case import Case
 from kurbel.solver.dead_centre import DeadCentre
-from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.frame import CommandReport, Subject
 from kurbel.tables.tables import LeftOut
 
 
@@ -72,4 +72,4 @@ def _flywheel_notes(case: Case) -> Iterator[str]:
         )
 
 
-FLYWHEEL = Functions("Turning effort and flywheel", _turned, _flywheel_notes)
+FLYWHEEL = CommandReport("Turning effort and flywheel", _turned, _flywheel_notes)

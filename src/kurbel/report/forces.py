@@ -14,7 +14,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.gas import Pressure
 from kurbel.solver.state import State
-from kurbel.tables.frame import Frame, Functions, Subject
+from kurbel.tables.frame import CommandReport, Frame, Subject
 from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
 
@@ -94,12 +94,12 @@ def _at_shaft_angle(forces: CylinderForces) -> Callable[[Array], State]:
     return lambda degrees: forces.at(degrees - forces.drive.lag)
 
 
-MOTION = Functions(
+MOTION = CommandReport(
     "Motion of the crank train",
     _with_motion,
     mechanism_notes,
     lambda case: 360.0,
-    own=_motion_shown,
+    subjects_and_notes=_motion_shown,
 )
 
 
@@ -233,4 +233,6 @@ def _forces_notes(case: Case) -> Iterator[str]:
         )
 
 
-FORCES = Functions("Forces in the crank train", _with_forces, _forces_notes, own=_forces_shown)
+FORCES = CommandReport(
+    "Forces in the crank train", _with_forces, _forces_notes, subjects_and_notes=_forces_shown
+)

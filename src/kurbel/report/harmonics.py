@@ -16,7 +16,7 @@ from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.harmonics import CylinderOrders, MachineOrders, Orders
-from kurbel.tables.frame import Frame, Functions, Subject
+from kurbel.tables.frame import CommandReport, Frame, Subject
 from kurbel.tables.shown import PlaceRow, Places
 
 TORQUE_ORDERS = by_id(
@@ -79,7 +79,9 @@ def _harmonics(
     return [*cylinders, machine_subject], _harmonics_notes(harmonics)
 
 
-HARMONICS = Functions("Harmonics of the turning effort", whole_machine("harmonics"), own=_harmonics)
+HARMONICS = CommandReport(
+    "Harmonics of the turning effort", whole_machine("harmonics"), subjects_and_notes=_harmonics
+)
 
 
 def requested_orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:

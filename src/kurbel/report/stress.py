@@ -10,7 +10,7 @@ from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.stress import CrankshaftStrength, ThrowStrength
 from kurbel.solver.chapters.stress_places import PARTS
-from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.frame import CommandReport, Subject
 from kurbel.tables.shown import PlaceRow, Places
 
 STRESSES = by_id(
@@ -153,4 +153,4 @@ def _stress_notes(case: Case) -> Iterator[str]:
         yield verdict
 
 
-STRESS = Functions("Strength of the crankshaft", _stressed, _stress_notes)
+STRESS = CommandReport("Strength of the crankshaft", _stressed, _stress_notes)

@@ -14,7 +14,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.chapters.chain import tree_from_first
 from kurbel.solver.chapters.natural_modes import Holzer, holzer_at
 from kurbel.solver.chapters.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
-from kurbel.tables.frame import Frame, Functions, Subject
+from kurbel.tables.frame import CommandReport, Frame, Subject
 from kurbel.tables.shown import PlaceRow, Places
 from kurbel.tables.tables import LeftOut
 
@@ -165,10 +165,10 @@ def _torsion(
     return [*subjects, machine_subject], notes
 
 
-TORSION = Functions(
+TORSION = CommandReport(
     "Torsional vibration",
     lambda case: [Subject("shaft line", _limited(case.torsion))],
-    own=_torsion,
+    subjects_and_notes=_torsion,
 )
 
 

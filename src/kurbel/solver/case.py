@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from kurbel.arrays import Array
 from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import UsageError
@@ -145,13 +147,14 @@ class Case(NotebookView):
 
         return TurningEffort(self.machine, self.cylinders, self.count)
 
-    def harmonics(self, orders: Array | None = None) -> MachineOrders:
+    def harmonics(self, orders: Array | Sequence[float] | None = None) -> MachineOrders:
         """Return the orders (n,) of the turning effort, or the usual ones.
 
         Raises UsageError where nothing turns the machine, NoSolutionError where losses leave too little.
         """
         _ = self.effort.excess  # refuses a machine that cannot run
-        harmonics = _orders()(self.effort, orders)
+        chosen = None if orders is None else np.asarray(orders, dtype=float)
+        harmonics = _orders()(self.effort, chosen)
         # those of the same orders are computed once
         return self._harmonics.setdefault(tuple(harmonics.orders.tolist()), harmonics)
 

@@ -217,7 +217,7 @@ def _loads_of_pins(state: State) -> list[Number]:
     free = state.without_pin_friction
     loads = [crank_pin_force(free).T]
     if free.rod_angle:
-        loads.append(crosshead_pin_force(free).D)
+        loads.append(crosshead_pin_force(free).along)
     return loads
 
 
@@ -234,7 +234,7 @@ def _ring_pressures_of_links(state: State) -> list[Number]:
 
 def _senses_of_links(state: State) -> list[Number]:
     """Return the forces whose signs decide which sides of the guides of links are loaded, where these rub."""
-    return [link.guide_sign for link in state.links if link.drive.rubs]
+    return [link.guide_numerator for link in state.links if link.drive.rubs]
 
 
 def _sense_without_pins(state: State) -> list[Number]:
@@ -250,7 +250,7 @@ def _sense_with_pins(state: State) -> list[Number]:
 def _sense(state: State) -> Number:
     """Return the force in N whose sign decides which side of a guide, or of a Scotch yoke, is loaded."""
     if state.rod_angle:
-        return state.guide_sign
+        return state.guide_numerator
     return state.after_steady_friction
 
 

@@ -38,7 +38,7 @@ class ExactRod(NamedTuple):
     """A connecting rod of mass m_r, centre of gravity at a from the crosshead pin and moment of inertia I_r about it.
 
     It moves like a mass m_r a/L at the crank pin, m_r (1 − a/L) at the crosshead pin, in kg, and a couple
-    (I_r − m_r a (L − a)) ψ̈ in N m: excess_inertia in kg m² (R 298). The first mass pulls at the pin with its
+    (I_r − m_r a (L − a)) ψ̈ in N m: excess_inertia in kg m². It takes the place of the ½ to ⅔ of R 298. The first mass pulls at the pin with its
     centrifugal force and its weight, the second moves to and fro with the piston.
     """
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _SLOWEST = 1e-100
 """Revolutions per second below which, and above whose inverse, kinetic energies leave the range of floats."""
 _ROUNDING = 1e-13
-"""Relative to the largest torque: a smaller mean, as that of masses without gas, is rounding."""
+"""Relative to the largest torques of all cylinders: a smaller mean, as that of masses without gas, is rounding."""
 _CANCELLED = 4e-14
 """Relative to the terms of a sum: if the sum is smaller over the whole cycle, the terms cancel."""
 _UNIFORM = 1e-14
@@ -158,6 +158,10 @@ class TurningEffort:
 
     def sampled(self, terms: Sequence[Term]) -> Array:
         """Return the sum of the terms on the common pieces; exactly 0 in machines where the terms cancel."""
+        return self._sampled_with_size(terms)[0]
+
+    def _sampled_with_size(self, terms: Sequence[Term]) -> tuple[Array, Array]:
+        """Return the sum of the terms as `sampled` does, and the sum of their largest values (machines,)."""
         pieces = self.pieces
         size = np.zeros(pieces.count)
         summed = pieces.filled(0.0)
@@ -168,9 +172,9 @@ class TurningEffort:
             for cylinder in cylinders:
                 summed = summed + pieces.resampled(values, source, position(cylinder))
         is_left = unless_cancelled(pieces.largest(summed), size, _CANCELLED) != 0
-        if is_left.all():
-            return summed
-        return np.where(pieces.of(is_left), summed, 0.0)
+        if not is_left.all():
+            summed = np.where(pieces.of(is_left), summed, 0.0)
+        return summed, size
 
     def at(
         self,
@@ -237,16 +241,23 @@ class TurningEffort:
         return terms
 
     @cached_property
+    def _effort_with_size(self) -> tuple[Array, Array]:
+        """M, and in N m (machines,) the sum of the largest values of its terms, which may all but cancel."""
+        if self.given is None:
+            return self._sampled_with_size(self.terms)
+        torque = self.given * self.pieces.of(self.share(None))
+        return torque, self.pieces.largest(torque)
+
+    @property
     def M(self) -> Array:
         """The turning effort in N m, with the losses of the machine; see `share`."""
-        if self.given is None:
-            return self.sampled(self.terms)
-        return self.given * self.pieces.of(self.share(None))
+        return self._effort_with_size[0]
 
     @cached_property
     def mean(self) -> Array:
-        """Mean of M in N m, (machines,)."""
-        return self.mean_of(self.M)
+        """Mean of M in N m, (machines,); 0 where nothing but rounding is left of those of all cylinders."""
+        torque, size = self._effort_with_size
+        return unless_cancelled(self.pieces.mean(torque), size, _ROUNDING)
 
     def mean_of(self, torque: Array) -> Array:
         """Return means in N m (…, machines) of torques (…, nodes, pieces); 0 where nothing but rounding is left."""

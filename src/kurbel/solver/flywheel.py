@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 RIGID_ABOVE = 100.0
-"""Natural order above which a coupling counts as rigid: it amplifies the first harmonics by no more than 1 in 10⁴."""
+"""Natural order above which a coupling counts as rigid: it amplifies the order ν by (ν/n_e)², 1 in 10⁴ for the first."""
 _MISSED = 1e-3
 """Relative deviation from the required δ above which there is a warning."""
 _LARGEST_EXPONENT = 709.7
@@ -48,6 +48,8 @@ _DOUBLINGS, _TRIALS = 30, 20
 """Largest numbers of doublings in the search for a flywheel that turns, and of secant steps for one with a given δ."""
 _CLOSE = 1e-13
 """Relative tolerance of δ in the search for the flywheel that gives it."""
+_IDLE = 0.01
+"""Share of what δ misses: a step of the search that gains less gains nothing."""
 
 
 def _coupling_torque() -> type[CouplingTorque]:
@@ -373,7 +375,7 @@ class MachineTurning(Results):
     GD2 = value(
         "GD²",
         "gd2",
-        "Flywheel effect GD² = 4gJ, weight times diameter squared",
+        "Flywheel effect GD² = 4J, mass times diameter squared; in kgf m² the same number",
         lambda turning: None if turning.J is None else 4 * turning.J,
         plain="GD2",
     )
@@ -387,7 +389,7 @@ class MachineTurning(Results):
     GD2_needed = value(
         "GD²_δ",
         "gd2",
-        "The same as flywheel effect GD² = 4gJ",
+        "The same as flywheel effect GD² = 4J_δ",
         lambda turning: None if turning.J_needed is None else 4 * turning.J_needed,
         plain="GD2_delta",
         unless=lambda turning: turning.is_the_needed,
@@ -655,6 +657,11 @@ class MachineTurning(Results):
             delta = self._delta_with(tried)
             left = self._wanted / delta - 1 if delta else math.inf
             if tried == inertia or not math.isfinite(left):
+                return None
+            # where the load alone holds the speed of a rigid shaft, a quarter of the flywheel changes next to nothing
+            is_bound = tried in (inertia / 4, 4 * inertia)
+            changes_nothing = abs(left - missed) < _IDLE * abs(left)
+            if is_bound and changes_nothing and self.machine.coupling is None:
                 return None
             rise = (left - missed) / (tried - inertia)
             slope = rise if rise > 0 else 1 / tried

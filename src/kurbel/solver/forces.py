@@ -65,13 +65,14 @@ SLIDING = {
     "rings": ("R", "at the piston rings"),
     "guides": ("F", "at the guides of the yoke"),
 }
+"""Key of the friction of what slides along the stroke line -> index of the symbols, and the place of the friction."""
 RUBBING = {
     "crank_pin": ("Z", "in the crank pin"),
     "crosshead_pin": ("H", "in the crosshead pin"),
     "journals": ("J", "in the journals of the throw"),
     "block": ("B", "at the block in the yoke"),
 }
-"""Key of a coefficient of friction -> index of the symbols, and the place of the friction."""
+"""The same of the friction of what turns, or slides along the slot of a yoke."""
 _PLACES = {**SLIDING, "constant": ("c", "by the constant force"), **RUBBING}
 
 
@@ -88,16 +89,16 @@ def _over_driving(forces: CylinderForces, lost: Any) -> Any:
     return lost / where(driving == 0, math.nan, driving)
 
 
-def per_second(work: Any, speed: Any, revolutions: int) -> Any:
+def power_of_work(work: Any, speed: Any, revolutions: int) -> Any:
     """Return the power in W of a work in J in so many turns; None without a speed in turns per second, and at rest."""
     if work is None or speed is None or every(speed == 0):
         return None
     return work * speed / revolutions
 
 
-def _per_second(forces: CylinderForces, work: Any) -> Any:
+def _power_of_work(forces: CylinderForces, work: Any) -> Any:
     """Return the power in W of a work in J per cycle of a cylinder."""
-    return per_second(work, forces.drive.machine.speed, forces.drive.revolutions)
+    return power_of_work(work, forces.drive.machine.speed, forces.drive.revolutions)
 
 
 def _rubs_at_one_place(forces: CylinderForces) -> bool:
@@ -217,7 +218,7 @@ class CylinderForces(SampledCylinder, Results):
     p_guide_mean = value(
         "p_g,m",
         "pressure",
-        "Mean pressure of the crosshead shoe on its guide over the stroke",
+        "Mean pressure of the crosshead shoe on its guide over both strokes",
         lambda forces: forces.on_guide.get("p_guide_mean"),
         after="T_peak",
     )
@@ -335,7 +336,7 @@ class CylinderForces(SampledCylinder, Results):
         "N_f",
         "power",
         "Power lost by friction: its work times cycles per second",
-        lambda forces: _per_second(forces, forces.friction_work),
+        lambda forces: _power_of_work(forces, forces.friction_work),
     )
     friction_loss = value(
         "e_f",
@@ -370,7 +371,7 @@ class CylinderForces(SampledCylinder, Results):
     loss_crosshead_logarithm = value(
         "e_ln",
         "ratio",
-        "The same loss with his cos β ≈ 1, sin β ≈ β: 1 − ln(1 + λ f)/(λ f) (D 5)",
+        "The same loss with his cos β ≈ 1, sin β ≈ β: 1 − ln(1 + λ f)/(λ f) (D, after 5)",
         lambda forces: forces.of_crosshead(mean_by_logarithm),
         after="loss_crosshead",
         of_book=True,
@@ -407,14 +408,14 @@ class CylinderForces(SampledCylinder, Results):
         "N_f,*",
         "power",
         "Power lost *",
-        of=lambda forces, name: _per_second(forces, forces.friction_works.get(name)),
+        of=lambda forces, name: _power_of_work(forces, forces.friction_works.get(name)),
         repeats=_rubs_at_one_place,
     )
     _checks = Heading("Checks")
     energy_residual = value(
         "ΔA/A",
         "ratio",
-        "Energy balance of the cycle, in minus out, by an independent quadrature",
+        "Energy balance of the cycle, in minus out over ∮ |T| R dφ, by an independent quadrature",
         lambda forces: forces.energy_balance(),
         residual=True,
     )
@@ -470,7 +471,7 @@ class CylinderForces(SampledCylinder, Results):
             answers["work"] = work = total(*chain(*(gas.works for gas in drive.gas)))
             answers["work_driving"] = total(*(where(work > 0, work, 0.0) for work in works))
             answers["work_driven"] = total(*(where(work < 0, work, 0.0) for work in works))
-            answers["power"] = _per_second(self, work)
+            answers["power"] = _power_of_work(self, work)
         traced = [gas.traced for gas in drive.gas if gas.traced]
         traced_work = math.fsum(work for work, _ in traced)
         if traced_work:
@@ -497,14 +498,16 @@ class CylinderForces(SampledCylinder, Results):
     def no_compressor(self) -> bool:
         """Whether rod loads are not shown: those of API 618 are of compressors, and at a connecting rod.
 
-        An engine may be motored, and a pump and a ram are driven, too.
+        An engine may be motored, and a pump and a ram are driven, too; with another load on the rod the gas and the
+        masses are not all that it carries.
         """
         if self.work is None or self.work >= 0:
             return True
         drive = self.drive
         if drive.revolutions > 1 or not self.mechanism.has_rod:
             return True
-        if drive.machine.pump is not None or drive.cylinder.ram_force is not None:
+        loads = (drive.cylinder.ram_force, drive.cylinder.force)
+        if drive.machine.pump is not None or any(load is not None for load in loads):
             return True
         return not any(gas.work < 0 and gas.compresses_gas for gas in drive.gas)
 

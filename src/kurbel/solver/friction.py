@@ -1,4 +1,4 @@
-"""The inclined plane with friction, after Redtenbacher 1862 (D)."""
+"""The inclined plane with friction, after Redtenbacher 1862 (D), whose equations 1 to 5 here are those of the plane."""
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError

@@ -88,7 +88,7 @@ def residual(cylinder: SampledCylinder) -> float | None:
     push = state.along_stroke
     moved = -mechanism.crank * state.angle.cos
     if motion:
-        push = crosshead_pin_force(state).D
+        push = crosshead_pin_force(state).along
         moved = motion.crosshead.real
     left = [gas_and_loads - gravity.real * parts - rubs - push + parts * moved * square]
     # the shaft: T R less the moments in crank pin and journals less M, over R
@@ -150,8 +150,9 @@ def _of_rod(
 ) -> list[Array]:
     """Return the residuals of the forces on the rod, of their moments over L, and of S along it; square: ω² in 1/s²."""
     arm, angle, L = motion.arm, state.angle, state.drive.mechanism.rod_length
-    at_crosshead, at_pin = crosshead_pin_force(state), crank_pin_force(state)
-    F = -at_crosshead.D + 1j * at_crosshead.T
+    at_crosshead = crosshead_pin_force(state)
+    at_pin = crank_pin_force(state)
+    F = -at_crosshead.along + 1j * at_crosshead.across
     K = (angle.cos + 1j * angle.sin) * (-at_pin.D + 1j * at_pin.T)
 
     lower = rod.mass * (1 - rod.centre)  # of the two masses at its ends that of the crosshead pin

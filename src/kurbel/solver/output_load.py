@@ -4,7 +4,7 @@
 
 x: displacement from the inner dead centre, of what swings the angle on the lever l; z: its fraction of the stroke. The
 points of f are a card on an area of 1 m²: their corners are those of its lines. Constant parts and springs do no work
-over the cycle, so that W = l s ∮ f dz.
+over the cycle of i revolutions, so that W = i l s ∮ f dz.
 """
 
 from __future__ import annotations
@@ -32,10 +32,11 @@ class OutputLoad:
         self.lever: Number = 1.0 if force.lever is None else force.lever
         self.profile: CardPressure | None = None
         if force.profile is not None:
+            # as a card on 1 m²: its pressures in Pa are forces in N, and there is no ambient to add
             setting = Setting(mechanism, 360.0, head_end=True, ambient=0.0, absolute=False)
             self.profile = CardPressure(force.profile, setting, count, None)
 
-    def without_points(self, displacement: Number, index: Indices | None) -> Number:
+    def constant_and_spring(self, displacement: Number, index: Indices | None) -> Number:
         """Return constant part and spring in N at displacements of the output; index: the machine of each, if many."""
         force = spread(self.force.constant + self.force.preload, index)
         if self.force.spring is None:
@@ -49,12 +50,14 @@ class OutputLoad:
         if self.profile is None:
             return []
         corners = self.profile.starts
-        degrees = (corners.degrees + 360.0 * turn for turn in range(self.turns))
-        return [Angles(corners.machine, angles) for angles in degrees]
+        of_turns = []
+        for turn in range(self.turns):
+            of_turns.append(Angles(corners.machine, corners.degrees + 360.0 * turn))
+        return of_turns
 
     @cached_property
     def work(self) -> Number:
         """Work W in J per cycle that the load does on the output, negative where the machine moves it."""
         if self.profile is None:
-            return 0.0 * self.stroke
+            return 0.0 * self.stroke  # of the shape of the numbers
         return self.profile.area * self.stroke * self.lever * self.turns

@@ -7,11 +7,11 @@ stroke line:
     P →  ───O───  ← S cos ψ     along it   S cos ψ = P − friction of crosshead, f |N|, and rings
             ↑ N   ← friction    across it  N = S sin ψ + G, from the lower guide, positive as drawn
 
-    N (cos ψ + f sin ψ sgn c sgn N) = P sin ψ + G cos ψ        D 3 with signs; f = 0: N = P tan ψ + G (R 301)
+    N (cos ψ + f sin ψ sgn c sgn N) = P sin ψ + G cos ψ        D 3, crosshead, with signs; f = 0: N = P tan ψ + G (R 301)
     S = P/cos ψ (R 300)   D = P cos(φ+ψ)/cos ψ (R 302)   T = P sin(φ+ψ)/cos ψ (R 303), by virtual work: T R dφ = P dx
 
-T is M/R throughout: where pins and journals rub, it lacks their moments of friction over R, the force at the pin, T_Z,
-does not.
+T = M/R always: where pins and journals rub, it is less the moments of friction over R. T_Z, the force at the pin, is
+not.
 
 The P of N is less the friction of the rings, that of S, D and T less all friction along the stroke line. The couple of
 an exact rod and the friction in the pins of a rod are balanced by side forces on guide and crank pin.
@@ -42,7 +42,7 @@ from kurbel.quantity import QuantityRow, column, value
 from kurbel.solver.chambers import Chambers
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
-from kurbel.solver.vector import Vector
+from kurbel.solver.vector import CrossheadForce, PinForce
 
 if TYPE_CHECKING:
     from kurbel.mechanisms.link_rod import LinkedPiston
@@ -63,16 +63,18 @@ class FrictionMoments(NamedTuple):
 
 
 class State(Chambers):
-    """Motion and forces of a cylinder at crank angles; see `MotionColumns`. What a machine does not have is None.
+    """Motion and forces of a cylinder at crank angles. What a machine does not have is None.
 
-    pin_friction: whether friction in pins and journals is included.
+    drive: the parameters of the cylinder; angle: the crank angles; within: angles on the side that is meant where a
+    value jumps; both as in `MotionColumns`, which also has the angles of the rod, `posed` and `rod_angle`.
+    with_pin_friction: whether friction in pins and journals is included.
     """
 
     def __init__(
-        self, drive: Drive, angle: CrankAngle, within: Array, pin_friction: bool = True
+        self, drive: Drive, angle: CrankAngle, within: Array, with_pin_friction: bool = True
     ) -> None:
         super().__init__(drive, angle, within)
-        self.pin_friction = pin_friction
+        self.with_pin_friction = with_pin_friction
 
     @classmethod
     def at(
@@ -97,18 +99,18 @@ class State(Chambers):
 
     @property
     def without_pin_friction(self) -> State:
-        """The same state without friction in pins and journals, whose friction is computed from these loads."""
-        # a state that held itself would be freed late, with all its arrays
-        return self._frictionless if self.pin_friction and self.drive.pin_friction else self
+        """The state before friction in pins and journals; from its loads that friction is computed."""
+        if self.with_pin_friction and self.drive.pin_friction:
+            return self._frictionless
+        # not kept: a state that referred to itself would stay in memory, with all its arrays
+        return self
 
     @cached_property
     def _frictionless(self) -> State:
-        state = State(self.drive, self.posed, self.within, pin_friction=False)
-        state.slope, state.curvature, state.piston_forces = (
-            self.slope,
-            self.curvature,
-            self.piston_forces,
-        )
+        state = State(self.drive, self.posed, self.within, with_pin_friction=False)
+        state.slope = self.slope
+        state.curvature = self.curvature
+        state.piston_forces = self.piston_forces
         return state
 
     @property
@@ -183,7 +185,7 @@ class State(Chambers):
         load = self.drive.load
         if load is None:
             return None
-        force = load.without_points(self.displacement, self.drive.index)
+        force = load.constant_and_spring(self.displacement, self.drive.index)
         if load.profile is not None:
             force = force + self.pressure(load.profile)
         return self.filled(force)
@@ -280,7 +282,7 @@ class State(Chambers):
         """
         if self.P is None or self.rod_angle is None:
             return None
-        return self.along_stroke / self.rod_angle[1] - self._rod_side * self.rod_angle[0]
+        return self.along_stroke / self.rod_angle[1] - self._side_force_of_rod * self.rod_angle[0]
 
     @column("S_H", "force", extremes=("forces",), called="force along the rod at the crosshead pin")
     def S_crosshead(self) -> Array | None:
@@ -317,7 +319,7 @@ class State(Chambers):
         )
         return bend * (rod.excess_inertia * self.omega * self.omega)
 
-    def _side(self, couple: Number) -> Number:
+    def _side_force_of(self, couple: Number) -> Number:
         """Return the reduction of the guide force in N by a couple in N m on the rod: couple/(L cos ψ)."""
         return couple / (self.rod_angle[1] * self.mechanism.rod_length)
 
@@ -328,7 +330,7 @@ class State(Chambers):
         return np.where((turned < 90.0) | (turned >= 270.0), 1.0, -1.0)
 
     @cached_property
-    def _friction_side(self) -> Number:
+    def _side_force_of_friction(self) -> Number:
         """Side force in N by friction in both pins of the rod, or of the block in a Scotch yoke; 0 without friction."""
         if self.rod_angle is None:
             if not self.drive.yoke_rubs:
@@ -338,14 +340,14 @@ class State(Chambers):
         rubbing = self.rubbing
         if rubbing is None:
             return 0.0
-        return self._side(rubbing.at_crank + rubbing.at_crosshead)
+        return self._side_force_of(rubbing.at_crank + rubbing.at_crosshead)
 
     @cached_property
-    def _rod_side(self) -> Number:
+    def _side_force_of_rod(self) -> Number:
         """Side force in N of all couples on the rod: inertia couple of an exact rod, and friction in its pins."""
         if self.drive.rod is None:
-            return self._friction_side
-        return self._side(self.rod_couple) + self._friction_side
+            return self._side_force_of_friction
+        return self._side_force_of(self.rod_couple) + self._side_force_of_friction
 
     @cached_property
     def rubbing(self) -> FrictionMoments | None:
@@ -355,7 +357,7 @@ class State(Chambers):
         given. Where several cylinders share a throw, each is assigned an equal part of its bearing loads.
         """
         drive = self.drive
-        friction = drive.pin_friction if self.pin_friction else None
+        friction = drive.pin_friction if self.with_pin_friction else None
         if friction is None or self.P is None:
             return None
         pin = crank_pin_force(self.without_pin_friction)
@@ -428,11 +430,11 @@ class State(Chambers):
         return self.linked_piston.moment_on_master(self.angle, self.knuckle_force)
 
     @cached_property
-    def _links_side(self) -> Number:
+    def _side_force_of_links(self) -> Number:
         """Side force ΣM_K/(L cos ψ) in N that the link rods take from the guide of a master; 0 without them."""
         if not self.drive.links:
             return 0.0
-        return self._side(self._moment_of_links)
+        return self._side_force_of(self._moment_of_links)
 
     @property
     def moment_on_master(self) -> Any:
@@ -461,6 +463,7 @@ class State(Chambers):
         for link in self.links:
             moment = link.knuckle_moment
             if moment is not None:
+                # not in place: the first may be an array of the link
                 moments = moments + moment
         return moments
 
@@ -494,32 +497,35 @@ class State(Chambers):
         return self.P
 
     @cached_property
-    def guide_sign(self) -> Number:
+    def guide_numerator(self) -> Number:
         """Numerator of N: P sin ψ + G cos ψ in N, G: weight on the guide less side forces of couples."""
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
         return (
             self.after_steady_friction * sin_psi
-            + (self.drive.guide_weight - self._rod_side - self._links_side) * cos_psi
+            + (self.drive.guide_weight - self._side_force_of_rod - self._side_force_of_links)
+            * cos_psi
         )
 
     @cached_property
-    def guide_side(self) -> Array:
+    def guide_sign(self) -> Array:
         """Sign of N, +1 for N = 0: one for each angle, or for each piece at the nodes of pieces."""
-        sense = self.guide_sign
+        numerator = self.guide_numerator
         if np.ndim(self.angle.sin) > 1:
-            sense = rule(len(self.phi)).weights @ sense
+            # of a piece, that of its mean
+            numerator = rule(len(self.phi)).weights @ numerator
         elif self.within is not self.phi:
-            sense = State(
-                self.drive, CrankAngle.of(self.within), self.within, self.pin_friction
-            ).guide_sign
-        return np.where(sense >= 0, 1.0, -1.0)
+            # next to a jump, that of the angles on its side
+            angle = CrankAngle.of(self.within)
+            beside = State(self.drive, angle, self.within, self.with_pin_friction)
+            numerator = beside.guide_numerator
+        return np.where(numerator >= 0, 1.0, -1.0)
 
     @property
     def guide_denominator(self) -> Array:
         """Denominator of N: cos ψ + f sin ψ sgn c sgn N; ≤ 0 where the crosshead is self-locking."""
         sin_psi, cos_psi = self.rod_angle
         return cos_psi + sin_psi * (
-            self.guide_side * self.direction * self.drive.crosshead_friction
+            self.guide_sign * self.direction * self.drive.crosshead_friction
         )
 
     @cached_property
@@ -545,10 +551,10 @@ class State(Chambers):
         if self.rod_angle is None:
             if not self.mechanism.known_across or not (drive.weight or drive.yoke_rubs):
                 return None
-            return self.filled(drive.guide_weight - self._friction_side)
+            return self.filled(drive.guide_weight - self._side_force_of_friction)
         if not drive.rubs:
             sin_psi, cos_psi = self.rod_angle
-            of_couples = drive.guide_weight - self._rod_side - self._links_side
+            of_couples = drive.guide_weight - self._side_force_of_rod - self._side_force_of_links
             return self.after_steady_friction * (sin_psi / cos_psi) + of_couples
         denominator = self.guide_denominator
         is_locked = denominator <= 0
@@ -556,7 +562,7 @@ class State(Chambers):
             if drive.index is None:
                 raise NoSolutionError(drive.locks(float(self.phi[is_locked][0])))
             denominator = np.where(is_locked, np.nan, denominator)
-        return self.guide_sign / denominator
+        return self.guide_numerator / denominator
 
     M_knuckle = value(
         "M_An",
@@ -577,7 +583,7 @@ class State(Chambers):
         """Crosshead friction f |N| in N, magnitude."""
         if not self.drive.rubs:
             return 0.0
-        return self.N * (self.guide_side * self.drive.crosshead_friction)
+        return self.N * (self.guide_sign * self.drive.crosshead_friction)
 
     p_guide = value(
         "p_g",
@@ -612,7 +618,7 @@ class State(Chambers):
         radial = None if self.P is None else self.mechanism.radial(self.posed)
         if radial is None:
             return None
-        push = self.along_stroke * radial + self._rod_side * self.angle.sin
+        push = self.along_stroke * radial + self._side_force_of_rod * self.angle.sin
         if self.drive.cylinder.link_rod is not None:
             push = push - self._knuckle_inertia_on_pin.real
         if rod is None:
@@ -646,7 +652,7 @@ class State(Chambers):
         if self.drive.rod is None:
             return 0.0
         along, across = self.drive.weight_of(self.drive.rod.pin_mass)
-        return (self.angle.sin * along - self.angle.cos * across) - self._side(
+        return (self.angle.sin * along - self.angle.cos * across) - self._side_force_of(
             self.rod_couple
         ) * self.angle.cos
 
@@ -682,7 +688,7 @@ class State(Chambers):
         """Tangential force in N of the rod on the crank pin; None without a force."""
         if self._pushed_along is None:
             return None
-        return self._pushed_along - self.angle.cos * self._friction_side
+        return self._pushed_along - self.angle.cos * self._side_force_of_friction
 
     F_friction = value(
         "F_f",
@@ -727,7 +733,7 @@ class State(Chambers):
             lost["crosshead_pin"] = rubbing.at_crosshead * self.rod_slope
             lost["journals"] = rubbing.journals
         if self.drive.yoke_rubs:
-            lost["block"] = self._friction_side * self.angle.cos * self.mechanism.crank
+            lost["block"] = self._side_force_of_friction * self.angle.cos * self.mechanism.crank
         return lost
 
     @column("M", "torque", repeats=lambda forces: True)  # R T
@@ -742,12 +748,12 @@ class State(Chambers):
         return push - sum(self.losses.values(), start=0.0)
 
 
-def crank_pin_force(state: State) -> Vector:
+def crank_pin_force(state: State) -> PinForce:
     """Return the force of the rod on the crank pin in N, in the frame of the throw."""
-    return Vector(state.D - state.drive.rod_centrifugal_force, state.tangential_at_pin)
+    return PinForce(state.D - state.drive.rod_centrifugal_force, state.tangential_at_pin)
 
 
-def crosshead_pin_force(state: State) -> Vector:
+def crosshead_pin_force(state: State) -> CrossheadForce:
     """Return the force of the crosshead on its pin in N: components along P and along N, with their signs.
 
     Inertia and weight of the rod are excluded: along the stroke line it is the rod load less friction.
@@ -756,7 +762,7 @@ def crosshead_pin_force(state: State) -> Vector:
     of_rod = drive.mass - masses.parts if masses else 0.0
     along, across = drive.weight_of(of_rod)
     push = state.along_stroke + state.b * of_rod if drive.has_inertia else state.along_stroke
-    return Vector(push - along, state.N - drive.guide_weight + across)
+    return CrossheadForce(push - along, state.N - drive.guide_weight + across)
 
 
 def reduced_inertia(state: State) -> Any:

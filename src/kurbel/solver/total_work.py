@@ -11,7 +11,7 @@ from kurbel.machine import Machine
 from kurbel.numerics.arithmetic import every, total, where
 from kurbel.quantity import value
 from kurbel.solver.figures import Results
-from kurbel.solver.forces import CylinderForces, per_second
+from kurbel.solver.forces import CylinderForces, power_of_work
 
 _PRINTED = ("flywheel", "forces")
 """The commands that have the key values; limits take those of the first."""
@@ -44,7 +44,7 @@ class TotalWork(Results):
         "N_Σ",
         "power",
         "Indicated power of the whole machine: of all driving pistons; of all driven ones if none drives",
-        lambda machine_work: machine_work.per_second(machine_work.indicated_work),
+        lambda machine_work: machine_work.power_of_work(machine_work.indicated_work),
         plain="N_sum",
         commands=_PRINTED,
     )
@@ -61,7 +61,7 @@ class TotalWork(Results):
         "N_f,Σ",
         "power",
         "Power lost by friction in all cylinders",
-        lambda machine_work: machine_work.per_second(machine_work.friction_work),
+        lambda machine_work: machine_work.power_of_work(machine_work.friction_work),
         plain="N_f,sum",
         commands=_PRINTED,
         repeats=lambda machine_work: machine_work.is_of_one_cylinder,
@@ -131,9 +131,9 @@ class TotalWork(Results):
             return None
         return total(*works)
 
-    def per_second(self, work: Any) -> Any:
+    def power_of_work(self, work: Any) -> Any:
         """Return the power in W of a work in J per cycle of the machine; None without a speed, and at rest."""
-        return per_second(work, self.machine.speed, self.machine.revolutions)
+        return power_of_work(work, self.machine.speed, self.machine.revolutions)
 
     @cached_property
     def useful_share(self) -> Any:

@@ -1,4 +1,4 @@
-"""A force in a plane."""
+"""Forces in a plane."""
 
 from typing import Any, NamedTuple
 
@@ -9,8 +9,8 @@ Force = Any
 for it: the sum of a complex128 and a float is to it a complex number of any precision."""
 
 
-class Vector(NamedTuple):
-    """A force in N along D and along T."""
+class PinForce(NamedTuple):
+    """The force of a rod on the crank pin in N, radially along D and tangentially along T."""
 
     D: Number
     T: Number
@@ -19,3 +19,10 @@ class Vector(NamedTuple):
     def complex(self) -> Force:
         """D + iT."""
         return self.D + 1j * self.T
+
+
+class CrossheadForce(NamedTuple):
+    """The force of the crosshead on its pin in N, along the stroke line as P counts, and across it as N counts."""
+
+    along: Number
+    across: Number

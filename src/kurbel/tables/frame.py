@@ -96,7 +96,9 @@ class Subject(NamedTuple):
     def answer(self, quantity: Quantity) -> object:
         """Return a key value in SI: a number, an Extreme, or a tuple of numbers; None if there is none."""
         row = self.results.rows.key_values.get(quantity.id) if self.results else None
-        return row and row.of(self.results)
+        if row is None:
+            return None
+        return row.of(self.results)
 
     def named(self, choices: Iterable[ChosenValue]) -> Iterator[tuple[Quantity, object]]:
         """Yield the chosen ones of its key values in SI, in their order, with no heading."""
@@ -111,11 +113,12 @@ class Subject(NamedTuple):
         """Yield its key values of a command in SI, without those that are printed only on request."""
         if not self.results or self.columns_alone:
             return
-        for quantity, of, unless, _ in self.results.rows.key_values.values():
+        for row in self.results.rows.key_values.values():
+            quantity = row.quantity
             is_printed = command in quantity.commands and command not in quantity.on_request
-            if not is_printed or (unless and unless(self.results)):
+            if not is_printed or (row.unless and row.unless(self.results)):
                 continue
-            value = of(self.results)
+            value = row.of(self.results)
             if value is not None:
                 yield quantity, value
 
@@ -176,13 +179,18 @@ _PARTS = {"bearings": "bearings", "stress": "throws"}
 """What the parts of a report are called where they are no cylinders."""
 
 
+def _group_of(command: str) -> str:
+    """Return what the parts of the report of a command are called, the JSON key of their list."""
+    return _PARTS.get(command, "cylinders")
+
+
 class _Rows(NamedTuple):
-    """What a subject has over the crank angle and at its places; why: why it has no row, if it has none."""
+    """What a subject has over the crank angle and at its places; nowhere: why it has no row, if it has none."""
 
     subject: Subject
     tables: tuple[PlaceTable, ...]
     columns: tuple[Column, ...]
-    why: str
+    nowhere: str
 
 
 @np.errstate(all="ignore")
@@ -217,7 +225,7 @@ def report_on(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
-        _PARTS.get(frame.command, "cylinders"),
+        _group_of(frame.command),
         whole=of_machine,
         parts=tuple(parts),
         notes=(*notes, *_added_notes(frame, with_rows, ids)) if frame.prose else (),
@@ -233,8 +241,8 @@ def _with_rows(frame: Frame, subjects: Iterable[Subject]) -> list[_Rows]:
         tables = tuple(table.shown(frame.system) for table in subject.tables)
         has_rows = subject.whole or bool(subject.at) or bool(tables)
         if has_rows or any(subject.key_values(frame.command)):
-            columns, why = _columns(frame, subject)
-            with_rows.append(_Rows(subject, tables, columns, why))
+            columns, nowhere = _columns(frame, subject)
+            with_rows.append(_Rows(subject, tables, columns, nowhere))
     return with_rows
 
 
@@ -246,23 +254,26 @@ def _check_columns(frame: Frame, with_rows: Sequence[_Rows], ids: set[str]) -> N
             raise UsageError(f"--columns: {absent}")
     if not ids:
         for rows in with_rows:
-            if rows.why:
-                raise NoSolutionError(rows.why)
+            if rows.nowhere:
+                raise NoSolutionError(rows.nowhere)
 
 
 def _part(rows: _Rows, frame: Frame, with_values: bool) -> Part:
     """Return the part of the report that is about one subject."""
     subject = rows.subject
-    return Part(
+    part = Part(
         subject.name,
         rows.columns,
-        tuple(_key_values(subject, frame)) if with_values else (),
-        tuple(subject.left_out) if frame.prose else (),
-        tuple(subject.warnings) if frame.prose else (),
-        rows.tables,
-        rows.why,
-        subject.of,
+        place_tables=rows.tables,
+        nowhere=rows.nowhere,
+        of=subject.of,
     )
+    if with_values:
+        part = part._replace(key_values=tuple(_key_values(subject, frame)))
+    if frame.prose:
+        left_out = tuple(subject.left_out)
+        part = part._replace(left_out=left_out, warnings=tuple(subject.warnings))
+    return part
 
 
 def _added_notes(frame: Frame, with_rows: Sequence[_Rows], ids: set[str]) -> Iterator[str]:
@@ -272,8 +283,8 @@ def _added_notes(frame: Frame, with_rows: Sequence[_Rows], ids: set[str]) -> Ite
     if frame.compare and frame.command != "balance" and not has_approximations:
         yield _UNCOMPARED
     for rows in with_rows:
-        if rows.why:
-            yield f"{rows.why}."
+        if rows.nowhere:
+            yield f"{rows.nowhere}."
     for rows in with_rows:
         if rows.subject.idle and not frame.columns:
             yield f"{rows.subject.name}: {rows.subject.idle}"
@@ -315,7 +326,7 @@ def _report_on_names(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
-        "bearings" if frame.command == "bearings" else "cylinders",
+        _group_of(frame.command),
         tuple(parts),
         of_machine,
         provenance=partial(provenance, machine),
@@ -387,19 +398,19 @@ def _columns_of(id: str, state: AtAngles) -> Iterator[Array]:
             yield np.broadcast_to(values, np.shape(state["phi"]))
 
 
-class Functions(NamedTuple):
+class CommandReport(NamedTuple):
     """What a command on a machine consists of: a title, and functions of a case, which raise as `report` does.
 
     title: of its report; subjects: returns what it has results of, the whole machine last; notes: returns sentences
-    below the tables; end: returns the crank angle at which the table ends; own: returns subjects and notes of a report
-    that depends on the frame, or on options of the command, which it takes by their names.
+    below the tables; last_angle: returns the crank angle at which the table ends; subjects_and_notes: returns both, of a
+    report that depends on the frame, or on options of the command, which it takes by their names.
     """
 
     title: str
     subjects: Callable[[Case], list[Subject]]
     notes: Callable[[Case], Iterable[str]] = lambda case: ()
-    end: Callable[[Case], float] = lambda case: 360.0 * case.machine.revolutions
-    own: Callable[..., tuple[Sequence[Subject], Iterable[str]]] | None = None
+    last_angle: Callable[[Case], float] = lambda case: 360.0 * case.machine.revolutions
+    subjects_and_notes: Callable[..., tuple[Sequence[Subject], Iterable[str]]] | None = None
 
     @np.errstate(all="ignore")  # what overflows is refused by name
     def report(self, case: Case, frame: Frame, **options: object) -> Report:
@@ -407,10 +418,11 @@ class Functions(NamedTuple):
 
         Raises UsageError without such results, NoSolutionError if the machine jams, stalls, or vibrates without limit.
         """
-        if self.own:
-            subjects, notes = self.own(case, frame, **options)
+        if self.subjects_and_notes:
+            subjects, notes = self.subjects_and_notes(case, frame, **options)
         else:
-            subjects, notes = self.subjects(case), self.notes(case)
+            subjects = self.subjects(case)
+            notes = self.notes(case)
         return report_on(frame, case.machine, self.title, subjects, notes)
 
 

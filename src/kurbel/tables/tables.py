@@ -128,7 +128,7 @@ class Report(NamedTuple):
     """The output of one command.
 
     title: printed above everything; command and machine as in JSON (`machine` is None
-    for `kurbel table`); group: `cylinders`, `bearings`, `ratios` or `scenes`, the JSON key of `parts`; whole: the
+    for `kurbel table`); group: `cylinders`, `bearings`, `throws`, `ratios` or `scenes`, the JSON key of `parts`; whole: the
     results of the whole machine, if any; mirrored: what changes for the angles 360° − φ, which then have a second head
     line (empty: none); notes: sentences below the table; head: sentences right below the title; provenance: returns
     it, None where no file was read; cylinders: the names of all that the machine has.

@@ -263,8 +263,8 @@ class ShaftBearings:
         self.machine, self._cylinders = machine, cylinders
         if not any(map(_loads_pins, cylinders)):
             raise UsageError(
-                f"{machine.name}: no load on any bearing: give a cylinder with a connecting rod, and a pressure or "
-                "masses and a speed"
+                f"{machine.name}: no load on any bearing: give a cylinder with a connecting rod, and a pressure, a "
+                "'force', or masses and a speed"
             )
         self.obstacle = shaft_obstacle(machine)
         self.line = None if self.obstacle else SupportedShaft(machine)

@@ -19,8 +19,8 @@ import numpy as np
 
 from kurbel.arrays import Number
 from kurbel.errors import UsageError
+from kurbel.machine.drawn_gas import Gas
 from kurbel.machine.ideal_cards import Compressor
-from kurbel.machine.pumped import Gas
 from kurbel.numerics.arithmetic import some, where
 from kurbel.quantity import ValuesById, value
 from kurbel.solver.chapters.driven_pistons import SAME_PRESSURE, DrivenPiston
