@@ -105,12 +105,11 @@ def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
         if has_crank_end and not piston.crank_end_rod:
             rod = f"piston rod of {piston.name}" if number else "piston rod"
             forces[rod] = "no crank_end_rod given, its area is taken as 0"
-    # of an engine nobody expects a ram
-    if cylinder.ram_force or cylinder.mechanism.quick_return:
-        has_load = cylinder.ram_force or cylinder.force
-        forces["ram force"] = _unless(has_load, "no ram_force given")
-    elif cylinder.force:
+    if cylinder.force:
         forces["load"] = ""
+    # of an engine nobody expects a ram
+    if cylinder.ram_force or (cylinder.mechanism.quick_return and not cylinder.force):
+        forces["ram force"] = _unless(cylinder.ram_force, "no ram_force given")
     forces["inertia"] = no_masses or _no_speed(machine)
     forces["weight"] = no_masses
     if cylinder.inclination is None:
