@@ -50,12 +50,14 @@ class KnownLevel(Record):
 class Strokes(NamedTuple):
     """What a trace has been measured over instead of angles.
 
-    kind: volume or displacement; swept, smallest: range and smallest of its column, in m³ or m.
+    kind: volume or displacement; swept, smallest: range and smallest of its column, in m³ or m; against: its rows run
+    against the time.
     """
 
     kind: str
     swept: float
     smallest: float
+    against: bool
 
 
 def _placed() -> "Callable[[Trace, Setting], Trace]":
@@ -79,7 +81,8 @@ class Trace(Indivisible):
     against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the figures of the
     file were multiplied by; clock: how times became its angles; suction, discharge: pressures in
     Pa in the lines of a compressor, where they are known; heat: by what its heat release is computed; strokes: what it
-    was measured over instead of angles, which then are those of an infinite rod until it is in its chamber.
+    was measured over instead of angles, which then are those of an infinite rod until it is in its chamber; placed: the
+    same from then on, when no key moves its angles.
     Raises RuleError for samples that are no such cycle.
     """
 
@@ -100,6 +103,7 @@ class Trace(Indivisible):
     discharge: float | None = None
     heat: "HeatLaw | None" = None
     strokes: Strokes | None = None
+    placed: Strokes | None = None
     burns: ClassVar[bool] = False
     by_steam: ClassVar[bool] = False
     compresses: ClassVar[bool] = False
