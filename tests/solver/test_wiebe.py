@@ -11,6 +11,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import kurbel
+from kurbel.notes.left_out import forces_left_out
+from kurbel.notes.warnings import cylinder_warnings
 from kurbel.solver.forces import CylinderForces
 
 BORE, STROKE = 0.1, 0.1
@@ -245,6 +247,24 @@ def test_heat_of_an_offset_crank_is_released_to_the_end_of_its_expansion() -> No
     edges = (np.array([180.0, 181.0]) - 120) / (outer - inner - 121)
     released = 800 * float(np.diff(-np.exp(-5 * edges**3))[0])
     assert columns["dQ"][1] == pytest.approx(released, rel=1e-10)
+
+
+def test_work_that_is_not_of_the_fuel_is_doubted() -> None:
+    """By hand: an expansion with an exponent of less than κ takes up heat, whatever burns."""
+    keys = "compression_ratio: 10, start: 0 deg, duration: 50 deg, exponent: 1.4, expansion_exponent: 1.2, heat: %s"
+    doubts = [cylinder_warnings(forces_of(text(keys % heat))) for heat in ("1 J", "1 kJ")]
+    of_little, of_much = [[line for line in lines if "efficiency" in line] for lines in doubts]
+    # p V^n from 10^1.4 bar on over a volume of 1/9 to 10/9 of the stroke, less what the compression takes
+    peak = 1e5 * 10**1.4
+    gained = peak / 9 * (1 - 10**-0.2) / 0.2 - 1e5 * (10 / 9) * (10**0.4 - 1) / 0.4
+    assert gained * SWEPT > 1
+    assert len(of_little) == 1
+    assert not of_much
+    machine = kurbel.loads(text(keys % "0 J"))
+    lines = forces_left_out(machine, kurbel.solve(machine).cylinders[0])
+    assert ("indicated efficiency", "the fuel has no heat") in [
+        (item.what, item.why) for item in lines
+    ]
 
 
 def test_both_ends_and_an_offset_crank() -> None:

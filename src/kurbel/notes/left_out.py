@@ -135,6 +135,9 @@ def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOu
     if forces.friction_work is not None and not forces.work_driving:
         yield LeftOut("friction loss as a share", "no piston drives")
     gas = forces.drive.own_gas
+    heat = gas.heat if gas and gas.releases_heat else None
+    if heat is not None and heat.released.supplied == 0:
+        yield LeftOut("indicated efficiency", "the fuel has no heat")
     if gas and gas.wanders:
         yield LeftOut("scatter of p_i", "the measured cycles wander against each other")
     has_no_crosshead = cylinder.masses and cylinder.masses.crosshead is None
