@@ -344,9 +344,21 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
             f"a pressure of {show(peak, 'pressure')} is more than engines have, at most {most}; "
             "is its unit right?"
         )
+    yield from _heat_warnings(forces)
     if not forces.no_compressor:
         yield from _reversal_warnings(forces)
     yield from _lifting_warnings(forces)
+
+
+def _heat_warnings(forces: CylinderForces) -> Iterator[str]:
+    """Yield that a card does more work than its fuel has heat, which polytropes with other exponents than κ add."""
+    release = forces.heat_release
+    efficiency = release.answers.get("indicated_efficiency") if release else None
+    if isinstance(efficiency, float) and efficiency > 1:
+        yield (
+            f"an indicated efficiency of {efficiency:.3g} is more than all heat of the fuel: with exponents other than "
+            "'heat_ratio' the gas takes up heat that is not of the fuel"
+        )
 
 
 def _energy_warnings(forces: CylinderForces, is_traced: bool) -> Iterator[str]:
