@@ -709,3 +709,7 @@ def test_what_is_assumed_of_a_pump_is_listed() -> None:
         assert what in {item.what for item in delivery_left_out(delivery)}
         assert delivery.pump is not None
         assert "volumetric_efficiency" not in delivery.pump.answers
+    compressor = "{compressor: {suction: 0 bar, delivery: 5 bar, clearance: 0.05}}"
+    text = f"{keys.replace(drawn, compressor)}pump: {{liquid: {{bulk_modulus: 2 GPa}}}}\n"
+    delivery = api.solve(api.loads(text)).delivery
+    assert "what is given under pump" in {item.what for item in delivery_left_out(delivery)}

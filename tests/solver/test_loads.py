@@ -7,6 +7,7 @@ import pytest
 
 import kurbel
 from kurbel import loads
+from kurbel.notes.left_out import stages
 from kurbel.solver.case import Case
 from representative import case_of
 
@@ -166,6 +167,23 @@ def test_loads_that_give_back_their_work_leave_no_mean_torque(count: int, force:
     assert machine["M_max"].value > 0
     assert machine["M_mean"].value == 0
     assert machine["W"].value == 0
+
+
+def test_check_lists_each_load_that_is_computed() -> None:
+    """A press has either key or both; a shaper without any is expected to have a ram."""
+    shaper = (
+        "speed: 40 rpm\nmechanism: slotted-lever\ncrank: 100 mm\nframe: 250 mm\nlever: 600 mm\n"
+    )
+    ram, load = "ram_force: {work: 1 kN}\n", "force: 2 kN\n"
+    for keys, listed in (
+        (SHAPE + ram + load, {"load": "", "ram force": ""}),
+        (SHAPE + load, {"load": ""}),
+        (shaper + load, {"load": ""}),
+        (shaper, {"ram force": "no ram_force given"}),
+    ):
+        machine = loads(keys)
+        reasons = stages(machine, machine.cylinders[0])
+        assert {name: reasons[name] for name in ("load", "ram force") if name in reasons} == listed
 
 
 def test_a_hanging_weight_is_a_constant_force() -> None:

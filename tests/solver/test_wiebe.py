@@ -11,6 +11,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import kurbel
+from kurbel.notes.left_out import forces_left_out
+from kurbel.notes.warnings import cylinder_warnings
 from kurbel.solver.forces import CylinderForces
 
 BORE, STROKE = 0.1, 0.1
@@ -216,6 +218,53 @@ def test_four_strokes_have_exhaust_and_intake() -> None:
     assert abs(four["energy_residual"].value) < 1e-12
     lowered = forces_of(text(f"{FOUR_STROKE}, diagram_factor: 0.9", "200 mm", "four-stroke"))
     assert lowered["work"].value == pytest.approx(0.9 * four["work"].value, rel=1e-12)
+
+
+@pytest.mark.parametrize(("cycle", "falls"), [("two-stroke", 180.0), ("four-stroke", 360.0)])
+def test_the_burnt_share_falls_back_at_the_end_of_its_cycle(cycle: str, falls: float) -> None:
+    """It passes ½ where a s^2.5 = ln(2/(1 + e^−5)), and in its fall; nowhere beside that."""
+    keys = FOUR_STROKE if cycle == "four-stroke" else FOUR_STROKE.replace("exhaust: 1.1 bar, ", "")
+    where = forces_of(text(keys, "200 mm", cycle)).angles_where("x_b", 0.5)
+    half = -15 + 50 * (math.log(2 / (1 + math.exp(-5))) / 5) ** 0.4
+    assert where is not None
+    assert where.angles == pytest.approx((half, falls), abs=1e-9)
+
+
+def test_heat_of_an_offset_crank_is_released_to_the_end_of_its_expansion() -> None:
+    """The outstroke takes more than 180°: the share goes on rising there, by the function itself."""
+    keys = "compression_ratio: 10, heat: 0.8 kJ, start: 120 deg, duration: 60 deg"
+    forces = forces_of(text(keys, "130 mm", more="offset: 15 mm\n"))
+    inner, outer = forces.mechanism.dead_centres()
+    assert outer - inner > 183
+    keys = f"{keys.replace('60', str(outer - inner - 121))}"
+    forces = forces_of(text(keys, "130 mm", more="offset: 15 mm\n"))
+    after = np.array([175.0, 180.5, outer - inner - 1.5])
+    share = (after - 120) / (outer - inner - 121)
+    expected = (1 - np.exp(-5 * share**3)) / (1 - math.exp(-5))
+    columns = forces.columns(inner + after, "x_b", "dQ")
+    assert columns["x_b"] == pytest.approx(expected, rel=1e-12)
+    # over one degree, of 0.8 kJ less what the duration leaves
+    edges = (np.array([180.0, 181.0]) - 120) / (outer - inner - 121)
+    released = 800 * float(np.diff(-np.exp(-5 * edges**3))[0])
+    assert columns["dQ"][1] == pytest.approx(released, rel=1e-10)
+
+
+def test_work_that_is_not_of_the_fuel_is_doubted() -> None:
+    """By hand: an expansion with an exponent of less than κ takes up heat, whatever burns."""
+    keys = "compression_ratio: 10, start: 0 deg, duration: 50 deg, exponent: 1.4, expansion_exponent: 1.2, heat: %s"
+    doubts = [cylinder_warnings(forces_of(text(keys % heat))) for heat in ("1 J", "1 kJ")]
+    of_little, of_much = [[line for line in lines if "efficiency" in line] for lines in doubts]
+    # p V^n from 10^1.4 bar on over a volume of 1/9 to 10/9 of the stroke, less what the compression takes
+    peak = 1e5 * 10**1.4
+    gained = peak / 9 * (1 - 10**-0.2) / 0.2 - 1e5 * (10 / 9) * (10**0.4 - 1) / 0.4
+    assert gained * SWEPT > 1
+    assert len(of_little) == 1
+    assert not of_much
+    machine = kurbel.loads(text(keys % "0 J"))
+    lines = forces_left_out(machine, kurbel.solve(machine).cylinders[0])
+    assert ("indicated efficiency", "the fuel has no heat") in [
+        (item.what, item.why) for item in lines
+    ]
 
 
 def test_both_ends_and_an_offset_crank() -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from command import run
 from indicated import Engine, absolute, fraction
 from kurbel.errors import MachineFileError
 from kurbel.machine.one_cycle import of_cycle
@@ -174,6 +175,68 @@ def test_a_four_stroke_engine_fires_where_the_pressure_is_higher(
     assert value(forces, "n_compression") == pytest.approx(1.33, abs=5e-3)
 
 
+SWEPT = AREA * STROKE
+
+
+@pytest.mark.parametrize("digits", [3e-4, 3e-3])
+@pytest.mark.parametrize("begin", [0.0, 100.0, 201.0])
+def test_volumes_of_few_digits(tmp_path: Path, digits: float, begin: float) -> None:
+    """Rounding takes degrees about a dead centre, where the volume hardly changes, and next to nothing of the work."""
+    volumes, pressures = head_end(360, begin)
+    unit = digits * SWEPT
+    columns = (np.round(volumes[:-1] / unit) * unit, pressures[:-1])
+    (cylinder,) = Case(loads(compressor(trace(tmp_path, columns)))).cylinders
+    assert value(cylinder, "mean_pressure") == pytest.approx(p_i(0.158), rel=2e-4 + digits)
+    assert value(cylinder, "n_compression") == pytest.approx(1.4, abs=5e-3)
+
+
+def test_noisy_volumes_of_three_cycles(tmp_path: Path) -> None:
+    """A volume that trembles by 0.1 % of the stroke turns rows before or after the dead centre."""
+    volumes, pressures = head_end(360)
+    noise = np.random.default_rng(7).normal(scale=1e-3 * SWEPT, size=1080)
+    columns = (np.tile(volumes[:-1], 3) + noise, np.tile(pressures[:-1], 3))
+    (cylinder,) = Case(loads(compressor(trace(tmp_path, columns)))).cylinders
+    assert value(cylinder, "cycles_measured") == 3
+    assert value(cylinder, "mean_pressure") == pytest.approx(p_i(0.158), rel=5e-3)
+
+
+ENGINE = (
+    "cycle: four-stroke\nspeed: 1500 rpm\nstroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\n"
+    "indicator: {{pressures: absolute, head_end: {}}}\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("lag", "sign", "advice"),
+    [
+        (24, 1, r"put its pressures \d+(\.\d)? deg earlier against its displacements in the file"),
+        (0, -1, "write its displacements with the other sign"),
+    ],
+)
+def test_advice_names_no_key_that_is_refused(
+    tmp_path: Path, lag: int, sign: int, advice: str
+) -> None:
+    """Pressures that lag behind, or displacements from the outer dead centre: no key moves such rows."""
+    degrees = np.arange(0.0, 720.0, 0.5)
+    pressures = np.roll(absolute(Engine(), degrees), lag)
+    columns = (sign * fraction(degrees) * 100, pressures * 1e5)
+    head = trace(tmp_path, columns, "displacement_unit: mm, compression_ratio: 15")
+    machine = tmp_path / "machine.yaml"
+    machine.write_text(ENGINE.format(head))
+    output = run("check", machine).output
+    assert re.search(advice, output), output
+    assert "angle_zero" not in output
+    assert "angle_step" not in output
+
+
+def test_an_unknown_unit_is_the_only_fault(tmp_path: Path) -> None:
+    for keys in ("volume_unit: furlong3", "displacement_unit: furlong"):
+        with pytest.raises(MachineFileError) as raised:
+            loads(compressor(trace(tmp_path, GOOD, keys)))
+        assert "furlong" in str(raised.value)
+        assert "nan" not in str(raised.value)
+
+
 GOOD = head_end(360)
 
 
@@ -208,7 +271,7 @@ GOOD = head_end(360)
         ),
         ((GOOD[0] * 0 + 1, GOOD[1]), "volume_unit: m3", "the volume is the same in all rows"),
         (GOOD, "volume_unit: m3, angle_zero: 5 deg", "follow from the order of the rows; leave"),
-        (GOOD, "volume_unit: m3, pressure_column: 1", "column 1 is that of the angles"),
+        (GOOD, "volume_unit: m3, pressure_column: 1", "column 1 is that of the volumes"),
         (
             GOOD,
             "volume_unit: m3, clearance: 0.0158",

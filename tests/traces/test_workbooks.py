@@ -159,3 +159,57 @@ def test_what_is_no_workbook(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
             monkeypatch.setattr(read, "find_spec", absent)
         with pytest.raises(MachineFileError, match=re.escape(message)):
             loads(engine_text(file.with_name(name), keys))
+
+
+def damaged(file: Path, part: str, content: Callable[[bytes], bytes]) -> None:
+    """Change one part of a workbook, which stays a zip archive."""
+    with zipfile.ZipFile(file) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    parts[part] = content(parts[part])
+    with zipfile.ZipFile(file, "w") as archive:
+        for name, written in parts.items():
+            archive.writestr(name, written)
+
+
+@pytest.mark.parametrize(
+    "part", ["xl/worksheets/sheet1.xml", "xl/styles.xml", "xl/workbook.xml", "docProps/core.xml"]
+)
+def test_damaged_workbooks(tmp_path: Path, part: str) -> None:
+    """Whatever a damaged part does to its parser, the file is refused in one line."""
+    file = workbook(tmp_path)
+    damaged(file, part, lambda written: written[: len(written) // 2])
+    with pytest.raises(MachineFileError, match="cannot be read as a workbook"):
+        loads(engine_text(file))
+
+
+def test_a_damaged_archive(tmp_path: Path) -> None:
+    file = workbook(tmp_path)
+    raw = bytearray(file.read_bytes())
+    begin = raw.index(b"xl/worksheets/sheet1.xml") + 100
+    raw[begin : begin + 200] = bytes(200)
+    file.write_bytes(bytes(raw))
+    with pytest.raises(MachineFileError, match="cannot be read as a workbook"):
+        loads(engine_text(file))
+
+
+def test_a_workbook_of_charts_alone(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    book.create_chartsheet("Chart")
+    book.remove(book.active)
+    book.save(tmp_path / "p.xlsx")
+    with pytest.raises(MachineFileError, match="export its table as CSV"):
+        loads(engine_text(tmp_path / "p.xlsx"))
+
+
+def test_the_figures_are_on_another_sheet(tmp_path: Path) -> None:
+    file = workbook(tmp_path, [["Motor 7"]], "Cover", {"Run 1": ROWS})
+    with pytest.raises(MachineFileError, match=r"the first sheet, 'Cover', is read: .* 'Run 1'"):
+        loads(engine_text(file))
+    assert pressures_of(engine_text(file, ", sheet: Run 1")) == pytest.approx(PRESSURES)
+
+
+def test_formulas_without_values(tmp_path: Path) -> None:
+    """As a program writes them that computes nothing."""
+    rows = [[a, f"=2*{p / 2!r}"] for a, p in zip(ANGLES.tolist(), PRESSURES.tolist())]
+    with pytest.raises(MachineFileError, match="has formulas: open and save it in Excel"):
+        loads(engine_text(workbook(tmp_path, rows)))

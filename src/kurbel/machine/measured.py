@@ -108,10 +108,13 @@ class Columns(Record):
             key = f"{cls.what}_columns"
             columns = values[key]
         angle_column = values.get("angle_column", 1)
-        for other in ("pulse_column", "volume_column", "displacement_column"):
-            angle_column = values.get(other, angle_column)
+        measured = "angle"
+        for other in ("pulse", "volume", "displacement"):
+            if f"{other}_column" in values:
+                angle_column = values[f"{other}_column"]
+                measured = other
         is_of_angles = angle_column in columns and "angle_step" not in values
-        yield Rule(key, is_of_angles, f"column {angle_column} is that of the angles")
+        yield Rule(key, is_of_angles, f"column {angle_column} is that of the {measured}s")
         # times and the speed that makes them angles
         has_times = values.get("angle_unit") in SECONDS
         has_speed = "recorded_speed" in values

@@ -105,12 +105,11 @@ def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
         if has_crank_end and not piston.crank_end_rod:
             rod = f"piston rod of {piston.name}" if number else "piston rod"
             forces[rod] = "no crank_end_rod given, its area is taken as 0"
-    # of an engine nobody expects a ram
-    if cylinder.ram_force or cylinder.mechanism.quick_return:
-        has_load = cylinder.ram_force or cylinder.force
-        forces["ram force"] = _unless(has_load, "no ram_force given")
-    elif cylinder.force:
+    if cylinder.force:
         forces["load"] = ""
+    # of an engine nobody expects a ram
+    if cylinder.ram_force or (cylinder.mechanism.quick_return and not cylinder.force):
+        forces["ram force"] = _unless(cylinder.ram_force, "no ram_force given")
     forces["inertia"] = no_masses or _no_speed(machine)
     forces["weight"] = no_masses
     if cylinder.inclination is None:
@@ -136,6 +135,9 @@ def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOu
     if forces.friction_work is not None and not forces.work_driving:
         yield LeftOut("friction loss as a share", "no piston drives")
     gas = forces.drive.own_gas
+    heat = gas.heat if gas and gas.releases_heat else None
+    if heat is not None and heat.released.supplied == 0:
+        yield LeftOut("indicated efficiency", "the fuel has no heat")
     if gas and gas.wanders:
         yield LeftOut("scatter of p_i", "the measured cycles wander against each other")
     has_no_crosshead = cylinder.masses and cylinder.masses.crosshead is None

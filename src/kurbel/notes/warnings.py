@@ -256,6 +256,12 @@ def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
 
                 indicator = gas.piston.indicator
                 role = indicator.role if indicator else None
+                chambers = gas.piston.chambers.values()
+                recorded = {text for chamber in chambers for text in chamber.notes}
+                # what its cycle adds to the notes on its samples
+                for text in pressure.trace.notes:
+                    if text not in recorded:
+                        yield f"{gas.piston.name}, {end}: {text}"
                 for text in doubts(pressure.trace, pressure.setting, pressure.each, role):
                     yield f"{gas.piston.name}, {end}: {text}"
 
@@ -338,9 +344,21 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
             f"a pressure of {show(peak, 'pressure')} is more than engines have, at most {most}; "
             "is its unit right?"
         )
+    yield from _heat_warnings(forces)
     if not forces.no_compressor:
         yield from _reversal_warnings(forces)
     yield from _lifting_warnings(forces)
+
+
+def _heat_warnings(forces: CylinderForces) -> Iterator[str]:
+    """Yield that a card does more work than its fuel has heat, which polytropes with other exponents than κ add."""
+    release = forces.heat_release
+    efficiency = release.answers.get("indicated_efficiency") if release else None
+    if isinstance(efficiency, float) and efficiency > 1:
+        yield (
+            f"an indicated efficiency of {efficiency:.3g} is more than all heat of the fuel: with exponents other than "
+            "'heat_ratio' the gas takes up heat that is not of the fuel"
+        )
 
 
 def _energy_warnings(forces: CylinderForces, is_traced: bool) -> Iterator[str]:

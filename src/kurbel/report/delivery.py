@@ -114,6 +114,8 @@ def delivery_left_out(delivery: MachineDelivery) -> Iterator[LeftOut]:
                 side = "head" if end.is_head else "crank"
                 reason = "one pressure on both strokes, which is that of neither pipe"
                 yield LeftOut(f"what the {side} end of {name} displaces", reason)
+    elif machine.pump:
+        yield LeftOut("what is given under pump", "no piston is that of a pump")
     if any(stage.suction is None for stage in delivery.stages):
         yield LeftOut(
             "capacity and the rest", "a drawn card or a trace does not say when valves open"

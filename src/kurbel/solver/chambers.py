@@ -51,12 +51,12 @@ def _own_rise(state: Chambers, end: str) -> Array | None:
 
 
 def _own_heat(
-    state: Chambers, column: Callable[[HeatOfEnd, Array, Indices | None], Array]
+    state: Chambers, column: Callable[[HeatOfEnd, Array, Array, Indices | None], Array]
 ) -> Array | None:
     """Return a column of the heat release; None where the cylinder's own piston has none."""
     gas = state.drive.own_gas
     heat = gas.heat if gas else None
-    return None if heat is None else column(heat, state.phi, state.drive.index)
+    return None if heat is None else column(heat, state.phi, state.within, state.drive.index)
 
 
 def _opening(state: Chambers, end: str) -> Number | None:

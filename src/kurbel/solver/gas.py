@@ -162,18 +162,21 @@ class HeatOfEnd(NamedTuple):
     setting: Setting
     work: Number
 
-    def burnt(self, degrees: Array, machine: Indices | None = None) -> Array:
-        """Return the burnt share x_b at crank angles in degrees of these machines."""
-        return self.released.burnt_at(self._after(degrees, machine), machine)
+    def burnt(self, degrees: Array, within: Array, machine: Indices | None = None) -> Array:
+        """Return the burnt share x_b at crank angles in degrees of these machines; `within`: the side of its fall to 0."""
+        return self.released.burnt_at(self._after(degrees, within, machine), machine)
 
-    def rate(self, degrees: Array, machine: Indices | None = None) -> Array:
+    def rate(self, degrees: Array, within: Array, machine: Indices | None = None) -> Array:
         """Return the heat in J that is released over the degree around crank angles of these machines."""
-        return self.released.rate_at(self._after(degrees, machine), machine)
+        return self.released.rate_at(self._after(degrees, within, machine), machine)
 
-    def _after(self, degrees: Array, machine: Indices | None) -> Array:
-        """Return the degrees from the firing dead centre."""
+    def _after(self, degrees: Array, within: Array, machine: Indices | None) -> Array:
+        """Return the degrees from the firing dead centre, in the cycle of the heat that holds `within`."""
         setting = self.setting if machine is None else taken(self.setting, machine)
-        return setting.after_dead_centre(degrees)
+        end = spread(self.released.end_of_cycle(self.setting.cycle), machine)
+        passed = within - setting.own_dead_centre - end
+        begin = setting.own_dead_centre + setting.cycle * (np.floor(passed / setting.cycle) + 1)
+        return np.asarray(degrees - begin)
 
 
 class CardPressure:

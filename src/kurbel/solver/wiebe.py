@@ -352,6 +352,10 @@ class WiebeHeat:
             last = np.minimum(self.card.start + self.card.duration + _MARGIN, last)
         return np.maximum(self.card.start - _MARGIN, self.expansion - 360.0), last
 
+    def end_of_cycle(self, cycle: float) -> Number:
+        """Return the degrees after the firing dead centre at which x_b falls to 0, in a cycle of so many."""
+        return 360.0 if cycle == 720.0 else self.expansion
+
     def burnt_at(self, after: Array, machine: Indices | None = None) -> Array:
         """Return the burnt share x_b of what is released, at so many degrees after the firing dead centre."""
         card = self.card if machine is None else taken(self.card, machine)

@@ -50,12 +50,14 @@ class KnownLevel(Record):
 class Strokes(NamedTuple):
     """What a trace has been measured over instead of angles.
 
-    kind: volume or displacement; swept, smallest: range and smallest of its column, in m³ or m.
+    kind: volume or displacement; swept, smallest: range and smallest of its column, in m³ or m; against: its rows run
+    against the time.
     """
 
     kind: str
     swept: float
     smallest: float
+    against: bool
 
 
 def _placed() -> "Callable[[Trace, Setting], Trace]":
@@ -79,7 +81,8 @@ class Trace(Indivisible):
     against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the figures of the
     file were multiplied by; clock: how times became its angles; suction, discharge: pressures in
     Pa in the lines of a compressor, where they are known; heat: by what its heat release is computed; strokes: what it
-    was measured over instead of angles, which then are those of an infinite rod until it is in its chamber.
+    was measured over instead of angles, which then are those of an infinite rod until it is in its chamber; placed: the
+    same from then on, when no key moves its angles.
     Raises RuleError for samples that are no such cycle.
     """
 
@@ -100,6 +103,7 @@ class Trace(Indivisible):
     discharge: float | None = None
     heat: "HeatLaw | None" = None
     strokes: Strokes | None = None
+    placed: Strokes | None = None
     burns: ClassVar[bool] = False
     by_steam: ClassVar[bool] = False
     compresses: ClassVar[bool] = False
@@ -179,7 +183,9 @@ class Trace(Indivisible):
         if self.is_free:
             return replace(self, angles=self.angles * (period / self.period))
         angles = np.concatenate((self.angles[:-1], self.angles + self.period))
-        return replace(self, angles=angles, samples=joined_in_pairs(self.samples), completed=True)
+        joined = joined_in_pairs(self.samples)
+        notes = self.notes + turns_left_out(len(self.samples), 2)
+        return replace(self, angles=angles, samples=joined, completed=True, notes=notes)
 
     def in_chamber(self, setting: Setting) -> "Trace":
         """Return it over whole cycles of its chamber; what was measured over the stroke gets its crank angles."""
@@ -200,6 +206,15 @@ class Trace(Indivisible):
         """Return one cycle of these degrees alone, counted from 1."""
         of_period = self.over(period)
         return replace(of_period, samples=of_period.samples[number - 1 : number])
+
+
+def turns_left_out(laps: int, parts: int) -> tuple[str, ...]:
+    """Return the note on the last of some laps, which make no whole cycle of so many parts; () where none is left."""
+    left = laps % parts
+    if not left:
+        return ()
+    turns = "turn is" if left == 1 else f"{left} turns are"
+    return (f"the last {turns} left out: {laps} turns are no whole number of cycles of {parts}",)
 
 
 def joined_in_pairs(laps: Array) -> Array:

@@ -39,7 +39,8 @@ class Recording:
 
     angles (n,) in degrees; values (k, n); rows (n,): of which row each is; notes: what was changed. place: of a row, as
     a fault that lacks a message; most_turns: of the shaft in one cycle; is_drawn: a stretch between equal values is a
-    line of the diagram and not a hole; step: degrees from row to row of a lap, where laps have angles of their own.
+    line of the diagram and not a hole; way: of the piston in strokes at angles, where the file has that instead of
+    angles; step: degrees from row to row of a lap, where laps have angles of their own.
     """
 
     def __init__(
@@ -49,12 +50,14 @@ class Recording:
         place: Callable[[int], Fault],
         most_turns: int = 2,
         is_drawn: bool = False,
+        way: Callable[[Array], Array] | None = None,
     ) -> None:
         self.angles = angles
         self.values = values
         self.rows = np.arange(len(angles))
         self.most_turns = most_turns
         self.is_drawn = is_drawn
+        self.way = way
         self.step = 0.0
         self.notes: list[str] = []
         self._location_of_row = place
@@ -176,14 +179,17 @@ def whole_cycles(
     kind: str = "pressure",
     against: bool = False,
     most_turns: int = 2,
+    way: Callable[[Array], Array] | None = None,
 ) -> Laps:
     """Return samples closed to whole cycles; raises RuleError for what cannot be.
 
     angles (n,) in degrees; values (k, n) in the base of their kind, a row for each measured column; place: names a row;
-    against: angles count against the rotation; most_turns: of the shaft in one cycle.
+    against: angles count against the rotation; most_turns: of the shaft in one cycle; way: of the piston in strokes at
+    angles, where these were computed from it.
     """
     is_drawn = kind == "torque"
-    recording = Recording(-angles if against else angles, values, place, most_turns, is_drawn)
+    in_time = -angles if against else angles
+    recording = Recording(in_time, values, place, most_turns, is_drawn, way)
     _refuse_no_numbers(recording, kind)
     if kind == "pressure":
         _refuse_no_samples(recording)
@@ -320,6 +326,9 @@ def _lay_over_one_lap(recording: Recording) -> None:
     step = usual_step(np.diff(angles))
     span = angles[-1] - angles[0]
     laps = int((span + 1.5 * min(step, lap / 20)) // lap)
+    next_end = angles[0] + lap * (laps + 1)
+    if _hardly_moves(recording, np.array([angles[-1], next_end]))[0]:
+        laps += 1
     starts = angles[0] + lap * np.arange(laps + 1)
     bounds = np.searchsorted(angles, starts - min(1e-6 * lap, step / 2))
     counts = np.diff(bounds)
@@ -467,6 +476,8 @@ _ROUNDED = 0.25
 """Share of samples at the angle of the one before from which on the angles are rounded: of those none is left out."""
 _LARGE_HOLES = ((20.0, 10.0), (45.0, 3.0))
 """(degrees, times the median step): a gap beyond both is not bridged by a straight line."""
+_HARDLY = 0.02
+"""Strokes over which rows are not missed, whatever angle they take."""
 _WIDE = 3.0
 """Times the usual step: a wider one is reported as missing samples."""
 
@@ -511,7 +522,8 @@ def _closed(recording: Recording) -> Laps:
     missing = end - float(angles[-1])
     is_line = _level_lines(recording, np.diff(angles))
     step = max(usual_step(np.diff(angles)[~is_line]), recording.step)
-    if missing > 1.5 * step:
+    is_open = missing > 1.5 * step and not _hardly_moves(recording, np.array([angles[-1], end]))[0]
+    if is_open:
         recording.refuse_hole(-1, angles[-1], end, _unit_advice(angles))
 
     completed = missing > 1e-9 * period
@@ -522,7 +534,8 @@ def _closed(recording: Recording) -> Laps:
 
     # smaller holes are reported
     notes = list(recording.notes)
-    wide = np.flatnonzero(np.diff(angles) > _WIDE * step)
+    is_wide = (np.diff(angles) > _WIDE * step) & ~_hardly_moves(recording, angles)
+    wide = np.flatnonzero(is_wide)
     for i in wide[:5].tolist():
         notes.append(
             f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; "
@@ -556,7 +569,7 @@ def _refuse_large_holes(recording: Recording, angles: Array) -> None:
     """Raise RuleError where a stretch without samples is wide, in degrees and in median steps."""
     steps = np.diff(angles)
     is_line = _level_lines(recording, steps)
-    large = np.flatnonzero(_is_large(steps) & ~is_line)
+    large = np.flatnonzero(_is_large(steps) & ~is_line & ~_hardly_moves(recording, angles))
     if len(large):
         i = int(large[0])
         recording.refuse_hole(i, angles[i], angles[i + 1])
@@ -568,6 +581,16 @@ def _is_large(steps: Array) -> Flags:
     median = float(rising[len(rising) // 2])
     limit = min(max(degrees, times * median) for degrees, times in _LARGE_HOLES)
     return steps > limit
+
+
+def _hardly_moves(recording: Recording, angles: Array) -> Flags:
+    """Return between which of angles (n,), computed from the way of the piston, it goes hardly any way.
+
+    At a dead centre the rounding of a volume is degrees wide.
+    """
+    if recording.way is None:
+        return np.zeros(len(angles) - 1, dtype=bool)
+    return np.asarray(np.diff(recording.way(angles)) <= _HARDLY, dtype=bool)
 
 
 def _level_lines(recording: Recording, steps: Array) -> Flags:

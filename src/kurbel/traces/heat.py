@@ -97,6 +97,10 @@ class Released(NamedTuple):
         burnt[self.last :] = 1.0
         return burnt
 
+    def end_of_cycle(self, cycle: float) -> float:
+        """Return the degrees after the firing dead centre at which x_b falls to 0, in a cycle of so many."""
+        return cycle / 2
+
     def burnt_at(self, after: Array, machine: Indices | None = None) -> Array:
         """Return the burnt share x_b at so many degrees after the firing dead centre; a trace is of one machine."""
         return np.interp(after, self.angles, self.burnt)

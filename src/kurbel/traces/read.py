@@ -122,7 +122,26 @@ class Table(NamedTuple):
 
 def read_table(file: str, layout: Layout) -> Table:
     """Return the columns of a file; raises RuleError with the first line that cannot be read."""
-    text, layout = _text_and_layout(file, layout)
+    text, written_layout = _text_and_layout(file, layout)
+    try:
+        return _table_of(text, written_layout, file)
+    except RuleError as error:
+        # of a workbook the sheet may be the wrong one, or its formulas lack their values
+        (fault,) = error.faults
+        has_advice = "; write '" in fault.message or "; leave such" in fault.message
+        raw = _bytes_of(file)
+        if has_advice or not is_workbook(raw):
+            raise
+        sheet = written_layout.sheet
+        advice = _advice_on_sheet()(raw, os.path.basename(file), sheet, max(written_layout.wanted))
+        if not advice:
+            raise
+        message = fault.message.partition(";")[0] + advice
+        raise RuleError(fault._replace(message=message)) from None
+
+
+def _table_of(text: str, layout: Layout, file: str) -> Table:
+    """Return the columns of the text of a file; raises RuleError with the first line that cannot be read."""
     if layout.delimiter == layout.decimal and '"' not in text:
         refused(
             "a comma cannot be both in numbers and between columns; write 'delimiter: semicolon'",
@@ -173,6 +192,12 @@ def _sheet_text() -> Callable[[bytes, str, str | None, int], str]:
     from kurbel.traces.workbook import sheet_text
 
     return sheet_text
+
+
+def _advice_on_sheet() -> Callable[[bytes, str, str | None, int], str]:
+    from kurbel.traces.workbook import advice_on_sheet
+
+    return advice_on_sheet
 
 
 @lru_cache(maxsize=4)

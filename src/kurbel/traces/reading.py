@@ -70,6 +70,8 @@ _MOTORED_RISE = 3.0
 """Least pressure of such a peak over that at its feet; what is flat has no peak."""
 _FIRED_SCATTER = 0.03
 """Standard deviation over mean of the peaks of cycles, from which on something burns."""
+_ABOUT_HALF_A_TURN = 170.0
+"""Degrees from which on a dead centre is taken for the other one."""
 _CANCELLED = 1e-13
 """Share of the terms of a sum below which the sum is only rounding error."""
 _THIN = 2000
@@ -319,6 +321,22 @@ class TraceReading:
         if error >= 0.005 * abs(cured.p_i):
             then = f"{then.removesuffix(' bar')} ± {error / 1e5:.2g} bar"
         return f"p_i is then {then} instead of {now}"
+
+    def dead_centre_later(self, degrees: float) -> str:
+        """Return what to do so that the dead centre is so many degrees later: the key, or what to change in the file.
+
+        Of rows over volumes or displacements no key moves the angles.
+        """
+        placed = self.trace.placed
+        if placed is None:
+            return f"write {self.zero_later(degrees)}"
+        off = math.remainder(degrees, 360)
+        if abs(off) < _ABOUT_HALF_A_TURN:
+            side = "earlier" if off > 0 else "later"
+            return f"put its pressures {abs(off):.3g} deg {side} against its {placed.kind}s in the file"
+        if placed.kind == "volume":
+            return "are its volumes those of the other end?"
+        return "write its displacements with the other sign, growing from the inner dead centre"
 
     def zero_later(self, degrees: float) -> str:
         """Return the key that puts the dead centre so many degrees later."""

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
-from kurbel.errors import Fault, RuleError, refused
+from kurbel.errors import Fault, NotANumber, RuleError, refused
 from kurbel.mechanisms.setting import Setting
 from kurbel.traces.correct import Strokes, Trace
 from kurbel.traces.cycles import Laps, whole_cycles
@@ -54,12 +54,13 @@ def strokes_of_file(
         pressures = base(table.figures)
     column = table.angles * factor
 
-    def refuse_row(row: int, message: str) -> None:
-        raise RuleError(Fault(("file",), f"{table.line(int(row))}: {message}"))
+    def refuse_row(row: int, message: str, fault: type[Fault] = Fault) -> None:
+        raise RuleError(fault(("file",), f"{table.line(int(row))}: {message}"))
 
     if not np.isfinite(column).all():
         row = int(np.argmin(np.isfinite(column)))
-        refuse_row(row, f"the {kind} is {column[row]}, not a number; leave such rows out")
+        fault = NotANumber if np.isnan(column[row]) else Fault
+        refuse_row(row, f"the {kind} is {column[row]}, not a number; leave such rows out", fault)
     smallest = float(column.min())
     swept = float(column.max()) - smallest
     if swept <= 0:
@@ -75,8 +76,13 @@ def strokes_of_file(
         pressures[:, rows],
         lambda row: Fault(("file",), table.line(int(rows[row]))),
         most_turns=1,
+        way=_way,
     )
-    return laps, Strokes(kind, swept, smallest)
+    left_out = len(column) - len(rows)
+    if left_out:
+        note = f"{left_out} rows between others of the same {kind} are left out: it has too few digits there"
+        laps = laps._replace(notes=(*laps.notes, note))
+    return laps, Strokes(kind, swept, smallest, against)
 
 
 def _angles_of(fractions: Array, kind: str, refuse_row: Callable[[int, str], None]) -> StrokeRows:
@@ -132,6 +138,13 @@ def _angles_of(fractions: Array, kind: str, refuse_row: Callable[[int, str], Non
     return StrokeRows(counted[kept], order[kept])
 
 
+def _way(angles: Array) -> Array:
+    """Return the strokes that the piston of an infinite rod has gone at angles (n,) in degrees."""
+    strokes = np.floor(angles / 180)
+    within = np.radians(angles - 180 * strokes)
+    return np.asarray(strokes + (1 - np.cos(within)) / 2, dtype=float)
+
+
 def _dead_centres(fractions: Array) -> tuple[list[int], list[bool]]:
     """Return the rows at which the volume turns, and which are smallest ones; each lasts to the next."""
     is_low = fractions < _LOW
@@ -182,8 +195,9 @@ def placed(trace: Trace, setting: Setting) -> Trace:
         clearance = measured if measured >= _LEAST_CLEARANCE else None
     inner, outer = setting.mechanism.dead_centres()
     angles = crank_angles - (outer if setting.mirrored else inner)
-    in_chamber = replace(trace, angles=angles, clearance=clearance, strokes=None)
-    in_chamber = in_chamber.over(setting.cycle)
+    in_chamber = replace(
+        trace, angles=angles, clearance=clearance, strokes=None, placed=strokes
+    ).over(setting.cycle)
     if setting.cycle == 360:
         return in_chamber
 

@@ -4,19 +4,22 @@ Needs openpyxl, which is optional; old workbooks (xls) it cannot read.
 """
 
 import io
+import itertools
 import warnings
 import zipfile
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
-from kurbel.errors import refused
+from kurbel.errors import RuleError, refused
 from kurbel.near_words import did_you_mean
 
 _LARGEST = 1 << 30
 """Most bytes of an unpacked workbook: a small archive can unpack to anything."""
 _MOST_ROWS = 1 << 20
 """Rows of a sheet; no program writes more."""
+_EXAMINED = 200
+"""Rows in which formulas are looked for."""
 _ERRORS = ("#N/A", "#DIV/0!", "#REF!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!")
 """What a cell shows whose formula has no value; '#' would begin a comment."""
 _BLANK = "-"
@@ -30,23 +33,50 @@ def sheet_text(raw: bytes, name: str, sheet: str | None, columns: int) -> str:
     raw: the bytes of the file; name: of the file, for messages; sheet: its name, None for the first. Kept, since designs
     that vary what is known of a trace have one file in common.
     """
-    from openpyxl import load_workbook
-
     try:
-        with zipfile.ZipFile(io.BytesIO(raw)) as archive:
-            size = sum(entry.file_size for entry in archive.infolist())
-        if size > _LARGEST:
-            refused(f"{name} unpacks to {size / 2**30:.1f} GiB; export its table as CSV", "file")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of styles and extensions, which nobody needs here
-            workbook = load_workbook(io.BytesIO(raw), read_only=True, data_only=True)
-    except (zipfile.BadZipFile, KeyError, ValueError, TypeError, OSError) as error:
+        chosen = _chosen(_workbook(raw, name, data_only=True), name, sheet)
+        chosen.reset_dimensions()  # some programs write wrong ones
+        rows = chosen.iter_rows(max_row=_MOST_ROWS, max_col=columns, values_only=True)
+        return "\n".join(_lines(rows)) + "\n"
+    except RuleError:
+        raise
+    except (
+        Exception
+    ) as error:  # whatever damaged bytes do to the libraries that unpack and parse them
         refused(f"{name} cannot be read as a workbook ({error}); export its table as CSV", "file")
 
+
+def advice_on_sheet(raw: bytes, name: str, sheet: str | None, columns: int) -> str:
+    """Return why a sheet that could be opened has no rows of figures, or '' where it does not show.
+
+    Another program writes formulas without their values, or the figures are on another sheet than the first.
+    """
+    workbook = _workbook(raw, name, data_only=False)
     chosen = _chosen(workbook, name, sheet)
-    chosen.reset_dimensions()  # some programs write wrong ones
-    rows = chosen.iter_rows(max_row=_MOST_ROWS, max_col=columns, values_only=True)
-    return "\n".join(_lines(rows)) + "\n"
+    chosen.reset_dimensions()
+    rows = chosen.iter_rows(max_row=_EXAMINED, max_col=columns, values_only=True)
+    cells = itertools.chain.from_iterable(rows)
+    if any(isinstance(cell, str) and cell.startswith("=") for cell in cells):
+        return (
+            "; it has formulas: open and save it in Excel or LibreOffice, which store their values"
+        )
+    others = [f"'{other.title}'" for other in workbook.worksheets if other is not chosen]
+    if sheet is None and others:
+        return f"; the first sheet, '{chosen.title}', is read: choose another with 'sheet': {', '.join(others)}"
+    return ""
+
+
+def _workbook(raw: bytes, name: str, data_only: bool) -> Any:
+    """Return a workbook opened by openpyxl, with values in place of formulas or without; raises RuleError."""
+    from openpyxl import load_workbook
+
+    with zipfile.ZipFile(io.BytesIO(raw)) as archive:
+        size = sum(entry.file_size for entry in archive.infolist())
+    if size > _LARGEST:
+        refused(f"{name} unpacks to {size / 2**30:.1f} GiB; export its table as CSV", "file")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of styles and extensions, which nobody needs here
+        return load_workbook(io.BytesIO(raw), read_only=True, data_only=data_only)
 
 
 def _chosen(workbook: Any, name: str, sheet: str | None) -> Any:

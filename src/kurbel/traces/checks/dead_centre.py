@@ -66,6 +66,8 @@ def peak_elsewhere(reading: TraceReading) -> Doubt | None:
     first, last = _usual_range(reading)
     if not reading.is_engine or first <= peak_at <= last:
         return None
+    if reading.trace.placed is not None and abs(peak_at) > 270:  # the other turn, by the pressures
+        return None
     later = 90.0 * round((peak_at - _USUAL) / 90.0)
     zero = reading.trace.angle_zero
     if reading.kind == MOTORED:
@@ -82,7 +84,7 @@ def peak_elsewhere(reading: TraceReading) -> Doubt | None:
     side = "after" if peak_at > 0 else "before"
     return Doubt(
         f"the peak is {abs(reading.top_at):.4g} deg {side} the {where}{gas_exchange}: "
-        f"write {reading.zero_later(later)}; {reading.effect(cured)}",
+        f"{reading.dead_centre_later(later)}; {reading.effect(cured)}",
         cured,
     )
 
@@ -100,6 +102,13 @@ def motored_peak(reading: TraceReading) -> Doubt | None:
         return None
     cured = reading.put_later(after)
     side = "after" if after > 0 else "before"
+    if reading.trace.placed is not None:
+        return Doubt(
+            f"no combustion shows, and the peak is {abs(after):.2g} deg {side} the dead centre; that "
+            f"of a motored engine is at it or just before: {reading.dead_centre_later(after)}; "
+            f"{reading.effect(cured)}",
+            cured,
+        )
     effect = reading.effect(cured).replace("is then", "is")
     return Doubt(
         f"no combustion shows, and the peak is {abs(after):.2g} deg {side} the dead centre; that "
@@ -199,7 +208,7 @@ def flanks_elsewhere(reading: TraceReading) -> Doubt | None:
     other_end = _or_other_end(reading, later)
     return Doubt(
         f"{event} at the dead centre where its chamber is smallest, here {abs(off):.3g} deg "
-        f"{'after' if off > 0 else 'before'} it: write {reading.zero_later(later)}"
+        f"{'after' if off > 0 else 'before'} it: {reading.dead_centre_later(later)}"
         f"{other_end}; {reading.effect(cured, error)}",
         None if other_end else cured,
     )
@@ -208,6 +217,8 @@ def flanks_elsewhere(reading: TraceReading) -> Doubt | None:
 def _or_other_end(reading: TraceReading, later: float) -> str:
     """Return a question where half a turn may be the other end of the cylinder."""
     if abs(abs(later) - 180.0) > 1.0:
+        return ""
+    if reading.trace.placed is not None:  # it is in question already
         return ""
     other = "crank" if reading.setting.head_end else "head"
     return f", or is it the trace of the {other} end?"
@@ -230,6 +241,6 @@ def high_at_largest(reading: TraceReading) -> Doubt | None:
     cured = reading.put_later(180.0)
     return Doubt(
         f"near the dead centre where its chamber is smallest the pressure is {in_bar(high)}, near "
-        f"the other one {in_bar(low)}: write {reading.zero_later(180.0)}"
+        f"the other one {in_bar(low)}: {reading.dead_centre_later(180.0)}"
         f"{_or_other_end(reading, 180.0)}; {reading.effect(cured)}",
     )

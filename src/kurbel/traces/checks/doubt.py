@@ -17,4 +17,6 @@ class Doubt(NamedTuple):
 
 def sense_key(reading: TraceReading) -> str:
     """Return the key that lets the angle count in the other sense."""
-    return f"angle_sense: {'with' if reading.trace.against else 'against'}"
+    trace = reading.trace
+    against = trace.placed.against if trace.placed else trace.against
+    return f"angle_sense: {'with' if against else 'against'}"

@@ -282,7 +282,7 @@ def _with_dead_centre(reading: TraceReading) -> Cure | None:
     error = abs(reading.put_later(later + sure).p_i - moved.p_i)
     text = (
         f"a dead centre {abs(later):.2g} ± {sure:.2g} deg off does that; "
-        f"write {reading.zero_later(later)}"
+        f"{reading.dead_centre_later(later)}"
     )
     return Cure(shift.misfit + _FREE, text, moved, error)
 
@@ -295,5 +295,9 @@ def _with_clearance(reading: TraceReading, chamber: Chamber, clearance: float) -
     if reading.kind == COMPRESSOR:
         key = f"clearance: {likely:.3g}"
     misfit = best.misfit + _FREE_CLEARANCE + peak_misfit(reading, 0.0)
+    placed = reading.trace.placed
+    if placed is not None and placed.kind == "volume":
+        text = f"check its volumes: their clearance is {clearance:.3g} of the stroke, {likely:.3g} would do"
+        return Cure(misfit, text, reading.with_clearance(likely))
     text = f"write '{key}' instead of the clearance of {clearance:.3g}"
     return Cure(misfit, text, reading.with_clearance(likely))

@@ -53,7 +53,8 @@ def turns_in_pairs(reading: TraceReading) -> Doubt | None:
         return Doubt(
             f"its turns {seen}: a four-stroke cycle? write 'cycle: four-stroke' at the top; {effect}"
         )
-    if not trace.even:  # numbers of samples are
+    may_number = trace.even and trace.placed is None
+    if not may_number:
         return None
     joined = joined_in_pairs(laps)
     step = trace.period / (joined.shape[1] - 1)
@@ -100,6 +101,11 @@ def wandering_cycles(reading: TraceReading) -> Doubt | None:
             f"the cycles wander {abs(degrees):.3g} deg {side} from the first to the last: the "
             "speed was not constant; record the angle"
         )
+    if trace.placed is not None:
+        return Doubt(
+            f"the pressures wander {abs(degrees):.3g} deg {side} against the {trace.placed.kind}s from the "
+            "first cycle to the last: were both recorded at the same time? Check lost samples"
+        )
     return Doubt(
         f"the cycles wander {abs(degrees):.3g} deg {side} from the first to the last: does the "
         "angle count the same in each of them? Check 'angle_step' and lost samples"
@@ -110,7 +116,8 @@ def rounded_angles(reading: TraceReading) -> Doubt | None:
     """Many samples at the angle of the one before have rounded angles."""
     trace = reading.trace
     twins = int(np.count_nonzero(np.diff(reading.angles) == 0))
-    if not trace.files or twins < _TWICE * len(reading.angles):
+    is_of_angles = trace.files and trace.placed is None
+    if not is_of_angles or twins < _TWICE * len(reading.angles):
         return None
     begin = -trace.angles[-1] if trace.against else float(trace.angles[0])
     zero = trace.as_written(trace.angle_zero) - begin
