@@ -248,14 +248,15 @@ def _with_rows(frame: Frame, subjects: Iterable[Subject]) -> list[_Rows]:
 
 def _check_columns(frame: Frame, with_rows: Sequence[_Rows], ids: set[str]) -> None:
     """Refuse a requested column that no subject has, and a condition that holds nowhere; ids: of all columns."""
-    for name in frame.columns or ():
-        if name not in ids:
-            absent = _absent(name, frame.command, [rows.subject for rows in with_rows])
-            raise UsageError(f"--columns: {absent}")
+    # without any row no column shows whether the machine has it
     if not ids:
         for rows in with_rows:
             if rows.nowhere:
                 raise NoSolutionError(rows.nowhere)
+    for name in frame.columns or ():
+        if name not in ids:
+            absent = _absent(name, frame.command, [rows.subject for rows in with_rows])
+            raise UsageError(f"--columns: {absent}")
 
 
 def _part(rows: _Rows, frame: Frame, with_values: bool) -> Part:
