@@ -102,3 +102,18 @@ def test_a_sweep_over_the_displacement() -> None:
 def test_likely_mistakes(text: str, message: str) -> None:
     with pytest.raises(MachineFileError, match=re.escape(message)):
         cylinder_of(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "displacement: 1e27 m3\nstroke: 1e-9 m",
+        "displacement: 1e-27 m3\nstroke: 1e9 m",
+        "displacement: 1e27 m3\nbore: 1e-9 m",
+        "displacement: 1e-27 m3\nbore: 1e9 m",
+    ],
+)
+def test_sizes_that_no_key_may_have(text: str) -> None:
+    """A bore of 10¹⁸ m is refused as a value, and so where it follows from others."""
+    with pytest.raises(MachineFileError, match="beyond what a machine may have"):
+        cylinder_of(text)

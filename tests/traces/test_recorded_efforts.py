@@ -119,3 +119,12 @@ def test_a_hole_is_no_level_line(tmp_path: Path) -> None:
     degrees = np.append(np.arange(0.0, 300.0), np.arange(400.0, 1080.0))
     with pytest.raises(MachineFileError, match="no samples from 299 to 400 deg"):
         loads(machine_text(tmp_path, degrees, torque(degrees)))
+
+
+def test_a_turn_without_another_is_noted(tmp_path: Path) -> None:
+    """Of three turns a four-stroke cycle is the first two: their mean, and a note on the third."""
+    degrees = np.arange(0.0, 1080.0)
+    torques = 100 + 10 * (degrees // 360) + np.sin(np.radians(2 * degrees))
+    case = Case(loads(machine_text(tmp_path, degrees % 360, torques, "cycle: four-stroke")))
+    assert case.flywheel.M_mean == pytest.approx(105, rel=1e-4)
+    assert any("the last turn is left out" in note.text for note in machine_notes(case))

@@ -168,7 +168,7 @@ KINDS = {
     "volume": Kind(
         1e-27,
         1e27,
-        "m3, dm3, l, cm3, mm3, in3, ft3, US gal, imp gal, bbl",
+        "m3, dm3, l, cm3, mm3, in3, ft3, US gal, imp gal, bbl, cc, ml",
         "m^3",
         ("cm^3", "m^3"),
         "dm^3",
@@ -300,6 +300,8 @@ _FACTORS: dict[str, UnitFactor] = {
     "in": (254, 1e4),
     "ft": (3048, 1e4),
     "l": (1, 1e3),
+    "ml": (1, 1e6),
+    "cc": (1, 1e6),
     "US_gal": (3785411784, 1e12),
     "imp_gal": (454609, 1e8),
     "bbl": (158987294928, 1e12),

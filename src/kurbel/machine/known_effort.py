@@ -24,6 +24,7 @@ from kurbel.machine.shaft_side import (
     in_unit,
     points_of,
 )
+from kurbel.traces.correct import turns_left_out
 from kurbel.traces.cycles import Laps, cut, joined, samples_of_file
 
 
@@ -203,12 +204,14 @@ class RecordedEffort(Effort):
     def of_cycle(self, turns: int) -> Effort:
         """Return the mean of its cycles of so many turns; itself where it is one diagram."""
         cycles = self._cycles(turns)
-        if cycles is None:
+        if cycles is None or self.laps is None:
             return self
         count = len(cycles.values)
         if count == 1 and cycles is self.laps:
             return self
         notes = self.notes
+        if cycles.values.shape[1] > self.laps.values.shape[1]:  # of several turns each
+            notes = notes + turns_left_out(len(self.laps.values), turns)
         if count > 1:
             notes = (*notes, f"the mean of {count} cycles of {360 * turns:g} deg counts")
         return self.of_laps(cycles, self.zero, self.files[0], notes)

@@ -13,6 +13,7 @@ from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import Choice, NumberForm
 from kurbel.declared.keys import Key
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field, first_of
+from kurbel.declared.units import KINDS
 from kurbel.machine.indicator import Chamber, Indicator
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
@@ -494,6 +495,13 @@ class Piston(Record):
         """Yield that the displacement is another one than that of bore and stroke in m."""
         if self.displacement is None:
             return
+        # what it gives together with the other one is a length, too
+        smallest, largest, *_ = KINDS["length"]
+        is_beyond = (self.bore < smallest) | (self.bore > largest)
+        is_beyond = is_beyond | (stroke < smallest) | (stroke > 2 * largest)
+        sizes = {"bore": self.bore, "stroke": stroke}
+        message = "with it the bore is {bore:length}, the stroke {stroke:length}: beyond what a machine may have"
+        yield Rule("displacement", is_beyond, message, sizes)
         # V = π/4 d² s
         swept = math.pi / 4 * self.bore**2 * stroke
         ratio = self.displacement / swept

@@ -256,6 +256,12 @@ def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
 
                 indicator = gas.piston.indicator
                 role = indicator.role if indicator else None
+                chambers = gas.piston.chambers.values()
+                recorded = {text for chamber in chambers for text in chamber.notes}
+                # what its cycle adds to the notes on its samples
+                for text in pressure.trace.notes:
+                    if text not in recorded:
+                        yield f"{gas.piston.name}, {end}: {text}"
                 for text in doubts(pressure.trace, pressure.setting, pressure.each, role):
                     yield f"{gas.piston.name}, {end}: {text}"
 

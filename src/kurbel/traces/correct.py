@@ -183,7 +183,9 @@ class Trace(Indivisible):
         if self.is_free:
             return replace(self, angles=self.angles * (period / self.period))
         angles = np.concatenate((self.angles[:-1], self.angles + self.period))
-        return replace(self, angles=angles, samples=joined_in_pairs(self.samples), completed=True)
+        joined = joined_in_pairs(self.samples)
+        notes = self.notes + turns_left_out(len(self.samples), 2)
+        return replace(self, angles=angles, samples=joined, completed=True, notes=notes)
 
     def in_chamber(self, setting: Setting) -> "Trace":
         """Return it over whole cycles of its chamber; what was measured over the stroke gets its crank angles."""
@@ -204,6 +206,15 @@ class Trace(Indivisible):
         """Return one cycle of these degrees alone, counted from 1."""
         of_period = self.over(period)
         return replace(of_period, samples=of_period.samples[number - 1 : number])
+
+
+def turns_left_out(laps: int, parts: int) -> tuple[str, ...]:
+    """Return the note on the last of some laps, which make no whole cycle of so many parts; () where none is left."""
+    left = laps % parts
+    if not left:
+        return ()
+    turns = "turn is" if left == 1 else f"{left} turns are"
+    return (f"the last {turns} left out: {laps} turns are no whole number of cycles of {parts}",)
 
 
 def joined_in_pairs(laps: Array) -> Array:
