@@ -50,7 +50,7 @@ from kurbel.numerics.arithmetic import sqrt, where
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
     from kurbel.machine.link_rod import LinkRod
-    from kurbel.machine.load import Force
+    from kurbel.machine.load import OutputForce
     from kurbel.machine.valve import Valve
     from kurbel.traces.correct import Strokes
 
@@ -101,13 +101,13 @@ def _valve() -> type[Valve]:
     return Valve
 
 
-def _force() -> type[Force]:
-    from kurbel.machine.load import Force
+def _force() -> type[OutputForce]:
+    from kurbel.machine.load import OutputForce
 
-    return Force
+    return OutputForce
 
 
-def _constant_force(force: float) -> Force:
+def _constant_force(force: float) -> OutputForce:
     """Return the load of one constant force in N."""
     return _force()(constant=force)
 
@@ -218,7 +218,7 @@ class Cylinder(Record):
     moment: Moment | None = field(
         Moment, "Resisting moment of a mechanism whose output swings or rotates", absent="none"
     )
-    force: Force | None = field(
+    force: OutputForce | None = field(
         OneOf(
             NumberForm("force", becomes=lambda force, _: _constant_force(force)),
             RecordForm(_force),
@@ -417,7 +417,9 @@ def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
             f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}",
         )
     returns = bool(cylinder.mechanism.turns and moment and np.any(moment.back))
-    message = f"the output of a {kind} turns on and has no return stroke; give 'work' alone"
+    message = (
+        f"the output of a {kind} rotates continuously and has no return stroke; give 'work' alone"
+    )
     yield Rule(("moment", "return"), returns, message)
 
 

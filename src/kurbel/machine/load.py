@@ -1,6 +1,6 @@
-"""A load on what slides or swings: constant, of a spring, or by points over the stroke, of either sign.
+"""A force on the crosshead, ram or rocker: constant, of a spring, or by points over the stroke, of either sign.
 
-Its sign is that of P: positive where the displacement rises, which it does from the inner dead centre on.
+Its sign is that of P: positive from the inner toward the outer dead centre, as x and θ rise.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _PARTS = ("constant", "spring", "points")
 """Keys of which a load has one or several; their forces add up."""
 
 
-class Force(Record):
+class OutputForce(Record):
     """A force on the output in N, positive where its displacement x or θ rises: of a slider-crank toward the shaft.
 
     lever: of what swings, in m; spring: its rate in N/m; preload: its force at the inner dead centre. profile: the
@@ -42,7 +42,7 @@ class Force(Record):
     )
     preload: float = field(
         "force",
-        "Force of the spring at the inner dead centre, positive where x or θ rises",
+        "OutputForce of the spring at the inner dead centre, positive where x or θ rises",
         "F_V",
         default=0.0,
         absent="0 N",
@@ -82,14 +82,14 @@ class Force(Record):
         spring: float | None = None,
         preload: float = 0.0,
         lever: float | None = None,
-    ) -> Force:
+    ) -> OutputForce:
         """Return the load that these keys of a machine file describe; raises RuleError with every fault of its points."""
         profile = None if points is None else _profile(points, unit)
         return cls(constant, spring, preload, lever, profile)
 
     def rules_on(self, mechanism: Mechanism) -> Iterator[Rule]:
         """Yield whether the load fits the output of a mechanism: with a stroke, and a lever where it swings."""
-        message = f"the output of a {mechanism.name} turns on and has no stroke; give a 'moment'"
+        message = f"the output of a {mechanism.name} rotates continuously and has no stroke; give a 'moment'"
         yield Rule((), bool(mechanism.turns), message)
         slides = bool(mechanism.slides)
         no_lever = f"the output of a {mechanism.name} slides; a force on it has no lever"
@@ -118,7 +118,7 @@ def _point_faults(points: list[DiagramPoint], unit: UnitFactor) -> list[Fault]:
     fractions = [z for z, _, _ in points]
     for index, z in enumerate(fractions):
         if not 0 <= z <= 1:
-            message = f"{z:g} is no fraction of the stroke; fractions run from 0 to 1"
+            message = f"{z:g} is outside 0 to 1, the fractions of the stroke"
             return [Fault((index,), message)]
     first, last = fractions[0], fractions[-1]
     if (first, last) != (0.0, 1.0):

@@ -503,16 +503,20 @@ BLOCK_OFFERS = (
 """Of a mechanism with `block_slope`, the speed of the block over ω in m, and `pin_force_factor`, its force over P."""
 
 
-def pin_pressure(bound: float | None = None) -> KeyOffer:
-    """Return the pressure between pin and block; bound: in Pa, up to which the sources let such a pin go."""
+def pin_pressure_offer(bound: float | None = None) -> KeyOffer:
+    """Return the offer of the key value `pin_pressure`, F_pin/(d l) between pin and block (R p. 615).
+
+    bound: in Pa, up to which the sources let such a pin go.
+    """
 
     def largest(mechanism: Any, forces: Any) -> Extreme | None:
-        force = None if mechanism.pin_diameter is None else forces.extremes_of("F_pin")
-        if not force:
+        if mechanism.pin_diameter is None:
             return None
-        return Extreme(
-            force.peak.value / (mechanism.pin_diameter * mechanism.pin_length), force.peak.degrees
-        )
+        extremes = forces.extremes_of("F_pin")
+        if not extremes:
+            return None
+        area = mechanism.pin_diameter * mechanism.pin_length
+        return Extreme(extremes.peak.value / area, extremes.peak.degrees)
 
     text = "Largest pressure of the sliding block on the crank pin"
     return KeyOffer(

@@ -13,7 +13,7 @@ from kurbel.mechanisms import (
     force_column,
     pin_diameter,
     pin_length,
-    pin_pressure,
+    pin_pressure_offer,
 )
 from kurbel.mechanisms.slider_crank import crank_field, stroke_instead, yoke_sketch
 
@@ -54,7 +54,7 @@ class ScotchYoke(Mechanism):
     known_across = True
     OFFERS = (*BLOCK_OFFERS, _N_PAIR)
     # R p. 615: up to 200 kgf/cm²
-    KEY_OFFERS = (pin_pressure(bound=200 * 98066.5),)
+    KEY_OFFERS = (pin_pressure_offer(bound=200 * 98066.5),)
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return the crank with its block in the yoke."""

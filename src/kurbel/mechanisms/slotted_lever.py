@@ -22,7 +22,7 @@ from kurbel.mechanisms import (
     on_circle,
     pin_diameter,
     pin_length,
-    pin_pressure,
+    pin_pressure_offer,
 )
 from kurbel.numerics.arithmetic import bearing, sqrt
 
@@ -104,7 +104,7 @@ class SlottedLever(Mechanism):
 
     name = "slotted-lever"
     OFFERS = (*SWING_OFFERS, *BLOCK_OFFERS)
-    KEY_OFFERS = (*SWING_VALUES, pin_pressure())
+    KEY_OFFERS = (*SWING_VALUES, pin_pressure_offer())
     quick_return = True
 
     def rules(self) -> Iterator[Rule]:

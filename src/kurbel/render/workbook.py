@@ -6,6 +6,7 @@ wanted, and shown with the digits of a printed table. The same report gives the 
 
 from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime
+from itertools import chain
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Union
 
 from kurbel import __version__
@@ -170,8 +171,8 @@ def _meanings(report: Report, look: Look) -> list[tuple[str, ...]]:
     """Return the columns of all tables, each once: id, symbol, unit and meaning."""
     rows: dict[tuple[str, ...], None] = {}
     for part in report.all_parts:
-        place_tables_of = [column for table in part.place_tables for column in table.columns]
-        for column in (*part.columns, *place_tables_of):
+        columns_of_places = chain.from_iterable(table.columns for table in part.place_tables)
+        for column in (*part.columns, *columns_of_places):
             symbol = look.symbol(column.symbol, column.ascii_symbol)
             if column.text:
                 rows[column.id, symbol, look.unit(column.unit), look.data(column.text)] = None

@@ -149,19 +149,21 @@ def _ids_of(rows: Iterable[str]) -> list[str]:
 def _part(
     ratio: float, symbols: Mapping[str, tuple[str, str]], angles: Sequence[float], formula: str
 ) -> Part:
-    """Return the rows of one L/R; symbols: of the rows by their ids, in Greek letters and in ASCII.
+    """Return the table of one L/R. The rows of the book are columns here, over the crank angle.
+
+    symbols: of the columns by their ids, in Greek letters and in ASCII.
 
     Raises UsageError if the crank cannot turn.
     """
     if not ratio > 1:
         raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
-    values_of = {id: array("d") for id in symbols}
+    values_by_id = {id: array("d") for id in symbols}
     for degrees in angles:
         factors = _factors(CrankAngle.of(degrees), ratio, formula)
-        for id, values in values_of.items():
+        for id, values in values_by_id.items():
             values.append(factors[id])
     columns = [Column("phi", PHI.symbol, PHI.ascii_symbol, "deg", angles, PHI.text)]
-    for id, values in values_of.items():
+    for id, values in values_by_id.items():
         unit = shown_unit(FACTORS[id].kind, "si")
         columns.append(Column(id, *symbols[id], unit, values, FACTORS[id].text))
     return Part(ratio, tuple(columns))
@@ -209,24 +211,24 @@ def _roots(ratios: tuple[float, ...]) -> PlaceTable:
 
     The rod is square to the crank, tan φ = L/R, near the largest c (R p. 604).
     """
-    values_of = {id: array("d") for id in ROOTS}
+    values_by_id = {id: array("d") for id in ROOTS}
     for ratio in ratios:
         lam = 1 / ratio
         exact = _angle_of_zero_acceleration(ratio)
         first_order = math.degrees(math.acos(2 * lam / (1 + math.sqrt(1 + 8 * lam * lam))))
         there = _factors(CrankAngle.of(exact), ratio, "exact")
         by_book = _factors(CrankAngle.of(first_order), ratio, "first-order")
-        values_of["phi_b_zero"].append(exact)
-        values_of["x_b_zero"].append(there["displacement_factor"])
-        values_of["c_max_factor"].append(there["velocity_factor"])
-        values_of["phi_b_zero_book"].append(first_order)
-        values_of["x_b_zero_book"].append(by_book["displacement_factor"])
-        values_of["phi_square"].append(math.degrees(math.atan(ratio)))
+        values_by_id["phi_b_zero"].append(exact)
+        values_by_id["x_b_zero"].append(there["displacement_factor"])
+        values_by_id["c_max_factor"].append(there["velocity_factor"])
+        values_by_id["phi_b_zero_book"].append(first_order)
+        values_by_id["x_b_zero_book"].append(by_book["displacement_factor"])
+        values_by_id["phi_square"].append(math.degrees(math.atan(ratio)))
     columns = []
     for quantity in ROOTS.values():
         unit = shown_unit(quantity.kind, "si")
         symbols = quantity.symbol, quantity.ascii_symbol
-        values = values_of[quantity.id]
+        values = values_by_id[quantity.id]
         alone = _DIGITS.get(quantity.id, 0)
         columns.append(Column(quantity.id, *symbols, unit, values, quantity.text, alone=alone))
     names = tuple((f"L/R_=_{ratio:g}",) for ratio in ratios)

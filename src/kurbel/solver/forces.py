@@ -415,7 +415,7 @@ class CylinderForces(SampledCylinder, Results):
     energy_residual = value(
         "ΔA/A",
         "ratio",
-        "Energy balance of the cycle, in minus out over ∮ |T| R dφ, by an independent quadrature",
+        "Energy balance of the cycle over ∮ |T| R dφ, by an independent quadrature",
         lambda forces: forces.energy_balance(),
         residual=True,
     )

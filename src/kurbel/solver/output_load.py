@@ -12,7 +12,7 @@ from __future__ import annotations
 from functools import cached_property
 
 from kurbel.arrays import Indices, Number
-from kurbel.machine.load import Force
+from kurbel.machine.load import OutputForce
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.setting import Setting
 from kurbel.numerics.arithmetic import spread
@@ -26,7 +26,9 @@ class OutputLoad:
     turns: of the crank per working cycle. lever: in m, 1 where the output slides.
     """
 
-    def __init__(self, force: Force, mechanism: Mechanism, turns: int, count: int | None) -> None:
+    def __init__(
+        self, force: OutputForce, mechanism: Mechanism, turns: int, count: int | None
+    ) -> None:
         self.force, self.turns = force, turns
         self.stroke: Number = mechanism.stroke
         self.lever: Number = 1.0 if force.lever is None else force.lever

@@ -1,11 +1,12 @@
 """The pressure over the crank angle of a charge that burns by the function of Wiebe, and its heat release.
 
-With n of the compression up to the chamber's dead centre and of the expansion after it, absolute p, V = z + c the volume
-over that of the stroke, and q = (κ − 1) Q/V_s:
+By the first law V dp + n p dV = (κ − 1) dQ, with n of the compression up to the chamber's dead centre and of the
+expansion after it, and absolute p. V = z + c is the volume over the stroke volume V_s, z the fraction of the stroke and
+c the clearance over V_s; q = (κ − 1) Q/V_s, with the heat Q to the gas in J per cycle:
 
     d(p V^n) = q V^(n−1) dx_b,     p = p₁ (V₁/V)^n + q/V (x_b − x₁ (V₁/V)^(n−1) − K V^(1−n)),
 
-where 1 is the beginning of the stroke, and by parts K = (n − 1) ∫ x_b V^(n−2) dV from there on. Only K needs a
+where 1 is the start of the compression, or of the expansion, and by parts K = (n − 1) ∫ x_b V^(n−2) dV from there on. Only K needs a
 quadrature, of an integrand that begins with x_b and not with its slope: on pieces of the cycle, halved until it is a
 polynomial on each.
 """
@@ -36,7 +37,7 @@ _CENTRE = 360.0
 """Where the chamber's dead centre is in the pieces, which hold one compression before and one expansion after it."""
 
 
-class Stroke(NamedTuple):
+class StrokeStart(NamedTuple):
     """Where a stroke begins: n of p V^n, p in Pa, V over the volume of a stroke, x_b, K; of every angle or of all."""
 
     exponent: Any
@@ -130,20 +131,22 @@ class WiebePressure:
         return taken((self.card, self.setting), machine)
 
     @cached_property
-    def _compression(self) -> Stroke:
+    def _compression(self) -> StrokeStart:
         """The beginning of the compression, of all machines."""
         card = self.card
-        return Stroke(card.exponent, card.intake + self.setting.lift, 1 + card.clearance, 0.0, 0.0)
+        return StrokeStart(
+            card.exponent, card.intake + self.setting.lift, 1 + card.clearance, 0.0, 0.0
+        )
 
     @cached_property
-    def _expansion(self) -> Stroke:
+    def _expansion(self) -> StrokeStart:
         """The beginning of the expansion, of all machines: where the compression ends."""
         card = self.card
         centres = np.full(len(self._machines), _CENTRE)
         burnt = self._result(card.burnt(centres - _CENTRE, self.expansion))
         integral = self._result(self._integral_at(centres, self._machines))
         pressure = self._compression.pressure_at(self._heat, card.clearance, burnt, integral)
-        return Stroke(card.expansion_exponent, pressure, card.clearance, burnt, integral)
+        return StrokeStart(card.expansion_exponent, pressure, card.clearance, burnt, integral)
 
     def _closed(
         self, z: Array, after: Array, expands: Flags, integral: Array, machine: Indices | None
@@ -160,10 +163,10 @@ class WiebePressure:
         card, _ = self._of(machine)
         burnt = card.burnt(after, spread(self.expansion, machine))
         heat = spread(self._heat, machine)
-        return Stroke(*begins).pressure_at(heat, z + card.clearance, burnt, integral)
+        return StrokeStart(*begins).pressure_at(heat, z + card.clearance, burnt, integral)
 
     def _lowered(self, absolute: Any, machine: Indices | None) -> Any:
-        """Return gauge pressures of absolute ones, drawn about the back pressure by the diagram factor."""
+        """Return gauge pressures in Pa of absolute ones, by the diagram factor κ_d: p_back + κ_d (p − p_back)."""
         card, setting = self._of(machine)
         back = card.back_pressure + setting.lift
         drawn = back + card.diagram_factor * (absolute - back)

@@ -49,7 +49,7 @@ def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]
         mechanism = subject.results.mechanism
         if mechanism.turns:
             raise UsageError(
-                f"--over x: the output of a {mechanism.name} turns on and has no stroke"
+                f"--over x: the output of a {mechanism.name} rotates continuously and has no stroke"
             )
         # the way out, and the way back without the dead centre between them
         x = mechanism.stroke * fractions

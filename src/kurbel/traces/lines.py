@@ -74,7 +74,7 @@ class Lines(NamedTuple):
     expansion: Exponent
 
     @property
-    def apart(self) -> float:
+    def difference(self) -> float:
         """Exponent of the compression less that of the expansion."""
         return self.compression.value - self.expansion.value
 
@@ -85,10 +85,10 @@ class Gas(NamedTuple):
     compression: float
     expansion: float
     deviation: float
-    apart: float
+    difference_deviation: float
 
     @property
-    def parted(self) -> float:
+    def difference(self) -> float:
         """The usual difference."""
         return self.compression - self.expansion
 
@@ -147,7 +147,9 @@ class Chamber(NamedTuple):
         if lines is None:
             return _NO_LINES
         errors = math.hypot(lines.compression.error, lines.expansion.error)
-        squares = ((lines.apart - gas.parted) / math.hypot(gas.apart, errors)) ** 2
+        squares = (
+            (lines.difference - gas.difference) / math.hypot(gas.difference_deviation, errors)
+        ) ** 2
         for line, exponent in zip(lines, (gas.compression, gas.expansion)):
             noise = self.noise / line.level
             deviation = math.hypot(gas.deviation, line.error)
@@ -165,6 +167,8 @@ class Best(NamedTuple):
 
 
 _HALVINGS = 6
+_WIDEST_STEP = 10.0
+"""In the unit of the values: one that may be so far off is not known."""
 
 
 def least(misfit: Callable[[float], float], values: Iterable[float]) -> Best:
@@ -180,46 +184,54 @@ def least(misfit: Callable[[float], float], values: Iterable[float]) -> Best:
         neighbours = [(misfit(value), value) for value in (best - step, best + step)]
         smallest, best = min([(smallest, best), *neighbours])
 
-    # the curvature over a width in which the misfit grows by enough
-    bend = 0.0
-    while step < 10 and bend < 1:
+    # the step is doubled until the misfit rises by 1
+    rise = 0.0
+    while step < _WIDEST_STEP and rise < 1:
         step *= 2
-        bend = (misfit(best - step) + misfit(best + step)) / 2 - smallest
-    error = step / math.sqrt(bend) if bend > 0 else step
+        rise = (misfit(best - step) + misfit(best + step)) / 2 - smallest
+    error = step / math.sqrt(rise) if rise > 0 else step
     return Best(best, smallest, error)
 
 
-_CLEARANCES = np.linspace(math.log(0.005), math.log(3.0), 60).tolist()
+_LOG_CLEARANCES = np.linspace(math.log(0.005), math.log(3.0), 60).tolist()
 """Logarithms of clearances over the stroke volume."""
 
 
-def best_clearance(chamber: Chamber, gas: Gas) -> Best:
+def best_log_clearance(chamber: Chamber, gas: Gas) -> Best:
     """Return the logarithm of the clearance that gives the straightest lines."""
-    return least(lambda size: chamber.misfit(gas, math.exp(size)), _CLEARANCES)
+    return least(
+        lambda log_clearance: chamber.misfit(gas, math.exp(log_clearance)), _LOG_CLEARANCES
+    )
 
 
 _MOTORED_SPAN = 60.0
-_MOTORED_SIZES = np.geomspace(0.03, 0.4, 25)
+"""Degrees to either side of the peak."""
+_MOTORED_CLEARANCES = np.geomspace(0.03, 0.4, 25)
+"""Over the stroke volume."""
 _MOTORED_EXPONENTS = 1.15, 1.5
 _MOTORED_SCATTER = 0.03
 
 
-def goes_by_one_line(chamber: Chamber, clearance: float | None, top: float) -> bool:
+def goes_by_one_line(chamber: Chamber, clearance: float | None, peak: float) -> bool:
     """Return whether the pressure on both sides of its peak is one line p V^n = const: nothing burns.
 
-    top: degrees after the dead centre at which it peaks, taken for the dead centre. Without a clearance the one that
-    suits best is taken.
+    peak: degrees after the dead centre at which the pressure is largest; the line is taken about it. Without a
+    clearance the one that suits best is taken.
     """
-    place = chamber.after - top
-    inside = np.abs(place) <= _MOTORED_SPAN
+    after_peak = chamber.after - peak
+    inside = np.abs(after_peak) <= _MOTORED_SPAN
     pressures = chamber.absolute[inside]
     if len(pressures) < 2 * FEWEST or not (pressures > 0).all():
         return False
-    sizes = _MOTORED_SIZES if clearance is None else (clearance,)
-    lines = [polytrope(chamber.setting, float(size), place[inside], pressures) for size in sizes]
-    best = min((line for line in lines if line), key=lambda line: line.scatter, default=None)
-    if best is None:
+    clearances = _MOTORED_CLEARANCES if clearance is None else (clearance,)
+    fits = []
+    for tried in clearances:
+        fit = polytrope(chamber.setting, float(tried), after_peak[inside], pressures)
+        if fit:
+            fits.append(fit)
+    if not fits:
         return False
+    best = min(fits, key=lambda fit: fit.scatter)
     low, high = _MOTORED_EXPONENTS
     noise = chamber.noise / best.level
     return low <= best.value <= high and best.scatter <= math.hypot(_MOTORED_SCATTER, noise)

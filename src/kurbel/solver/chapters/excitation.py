@@ -57,6 +57,8 @@ def shaft_line_of(machine: Machine) -> ShaftLine:
 class Excitation(NamedTuple):
     """The torques on n masses in N m, by orders (k,), over their common period of `cycle` degrees.
 
+    M(φ) = M_m + Σ Re(M_ν e^{iνφ}), φ the angle of crank 1.
+
     gas, inertia: amplitudes (n, k) of what is independent of the speed, and of the inertia forces at ω_n = omega in
     rad/s; means (n,), with the load on the mass that takes it; load_slope: dL/dω of each mass at ω_n in N m s/rad (n,).
     """
@@ -71,10 +73,10 @@ class Excitation(NamedTuple):
 
 
 def torques_on(effort: TurningEffort, line: ShaftLine) -> tuple[Array, Array]:
-    """Return the torques on the masses in N m, and what the inertia forces have in them, (masses, nodes, pieces).
+    """Return the torques on the masses in N m, and the part of the inertia forces, (masses, nodes, pieces).
 
-    On the pieces of the effort. Efforts have the losses of the machine, inertia forces none; an effort that is known
-    from elsewhere acts on the first mass. Where a load varies over the turn, it is in them but for its mean.
+    On the pieces of the effort. Efforts have the losses of the machine, inertia forces none; an effort given in the
+    file acts on the first mass. Of a load that varies over the turn they have the variation about its mean.
     """
     torques, of_inertia = np.zeros((2, len(line.masses), *effort.pieces.degrees.shape))
     terms = [*effort.terms, *effort.missing_inertia]
@@ -90,7 +92,7 @@ def torques_on(effort: TurningEffort, line: ShaftLine) -> tuple[Array, Array]:
 
 
 def _terms_of(mass: ShaftMass, terms: Sequence[Term]) -> list[Term]:
-    """Return the terms of the torque with the cylinders alone whose cranks are at a mass."""
+    """Return the terms of the torque, restricted to the cylinders whose cranks are at this mass."""
     of_mass = list[Term]()
     for term in terms:
         cylinders = [
@@ -104,23 +106,25 @@ def _terms_of(mass: ShaftMass, terms: Sequence[Term]) -> list[Term]:
 def excitation(effort: TurningEffort, line: ShaftLine, orders: Array) -> Excitation:
     """Return what acts on the masses of a shaft line, order by order; the load takes the mean of all torques."""
     torques, of_inertia = torques_on(effort, line)
-    count = len(torques)
+
+    # order by order, gas and inertia in one analysis; [..., 0] is the only machine
     parts = np.concatenate((torques - of_inertia, of_inertia))
     acting = parts.any(axis=(1, 2))
-    by_order = np.zeros((2 * count, len(orders)), complex)
+    by_order = np.zeros((len(parts), len(orders)), complex)
     by_order[acting] = amplitudes(effort.pieces, parts[acting], orders)[..., 0]
     by_order = unless_cancelled(by_order, np.abs(parts).max(axis=(1, 2))[:, None], _ROUNDING)
+    gas, inertia = np.split(by_order, 2)
 
+    # the load takes the mean, and falls or rises with the speed
     means = effort.mean_of(torques)[:, 0]
     if not line.is_held:
         means[line.load] -= means.sum()
-    omega, law = effort.omega or 0.0, SpeedLaw.of(effort)
-    slopes = np.zeros(count)
+    omega = effort.omega or 0.0
+    law = SpeedLaw.of(effort)
+    load_slope = np.zeros(len(torques))
     if law:
-        slopes[line.load] = law.steepness[0] / omega
-    return Excitation(
-        omega, effort.cycle, orders, by_order[:count], by_order[count:], means, slopes
-    )
+        load_slope[line.load] = law.steepness[0] / omega
+    return Excitation(omega, effort.cycle, orders, gas, inertia, means, load_slope)
 
 
 # forced vibration
@@ -131,8 +135,8 @@ class Vibration:
 
     driving, angles: amplitudes (n, s, k) in N m and in rad of the cranks' shaft. sections: the places along the shaft
     whose torques are computed, each a segment and a share of its length: the two ends and the middle of a segment that
-    has inertia, else one. torques (sections, s, k) in N m, true ones on both sides of a gear. endless (s,): where an
-    order meets a mode that next to nothing damps, so that rounding bounds the torques.
+    has inertia, else one. torques (sections, s, k) in N m, true ones on both sides of a gear. endless (s,): true
+    where an order is at a natural frequency without damping; the torques are then infinite.
     """
 
     def __init__(self, chain: Chain, line: ShaftLine, acting: Excitation, omegas: Array) -> None:

@@ -22,7 +22,7 @@ from kurbel.solver.chapters.chain import (
 )
 
 _AT_REST = 1e-6
-"""A first mass that moves less than this, over the largest motion, is not what the others are referred to."""
+"""A first mass that moves less than this, over the largest motion, is not used as the reference of the others."""
 _ROUNDING = 1e-12
 """Of the largest motion: less than this is none in a line with branches, of which a whole part may be at rest."""
 _LAST_PLACES = 1e-15
@@ -36,8 +36,9 @@ _LEAST_GUESS = 1e-9
 class Holzer(NamedTuple):
     """Holzer's table of a mode: amplitudes Θ (n,), and torques (segments,) in N m per radian of the first mass.
 
-    torques, torques_behind: at the end before and at that behind a segment, which differ if it has inertia; residual:
-    what is left of the torque at the root, over the largest one.
+    Where the first mass is nearly at rest, they are per radian of the mass that moves most. torques, torques_behind: at
+    the end before and at that behind a segment, which differ if it has inertia; residual: what is left of the torque at
+    the root, over the largest one.
     """
 
     angles: Array
@@ -47,9 +48,9 @@ class Holzer(NamedTuple):
 
 
 class _Bars:
-    """The segments of a chain at angular frequencies ω (m,): what one makes of angle and torque at its near end.
+    """The segments of a chain at angular frequencies ω (m,): angle and torque at the far end from those at the near end.
 
-    θ′ = θ cos α − (T/k) sinc α        T′ = T cos α + ω² J_s θ sinc α
+    θ₂ = θ₁ cos α − (T₁/k) sinc α        T₂ = T₁ cos α + ω² J_s θ₁ sinc α        α = ω √(J_s/k)
     """
 
     def __init__(self, chain: Chain, omegas: Array) -> None:
@@ -199,10 +200,10 @@ def holzer_at(chain: Chain, omega: float) -> Holzer:
 class Modes:
     """The natural vibrations of a chain, the lowest first; of a free one the first is the rotation of the whole.
 
-    Holzer's table as quotients, from the leaves of the tree to its root. No step loses digits by cancellation but
-    through the figures of its own mass and segment, so that the points at rest that it counts, which are the modes
-    below ω (Sturm; Wittrick and Williams of segments with inertia), are those of a chain whose J and k differ by
-    rounding. A symmetric eigenproblem alone would lose the low modes of a chain of very unequal masses.
+    Holzer's table as quotients, from the leaves of the tree to its root. Each step uses one mass and one segment, so
+    that rounding acts as a change of that J and k in the last digit. The number of points at rest is that of the modes
+    below ω (Sturm; Wittrick and Williams of segments with inertia). A symmetric eigenproblem alone would lose the low
+    modes of a chain of very unequal masses.
     """
 
     def __init__(self, chain: Chain) -> None:

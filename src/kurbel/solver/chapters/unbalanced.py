@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 
 _SAMPLES = 256
-"""Samples of a revolution for the Fourier analysis of a mechanism; repeatedly four times as many for a short rod, …"""
+"""Samples of a revolution to begin with; four times as many, again and again, until the orders converge."""
 _MOST_SAMPLES = 1 << 20
-"""… up to this many for a batch together: a batch of more raises an error, and its machines are computed singly."""
+"""Largest number of samples times machines; a batch of more raises UsageError, and its machines are computed singly."""
 _SHOWN = 1e-9
 """Relative to the largest order: smaller ones are not listed."""
 _FEWEST = 8
@@ -35,10 +35,12 @@ _EPS = float(np.finfo(float).eps)
 
 
 def orders_of(throw: CylinderThrow, book: bool, count: int) -> ComplexArray:
-    """Return the Fourier coefficients c_n in m, n = 1 … k, (k, count): x″ = 2 Re Σ c_n e^{inφ}; rounding is set to 0.
+    """Return the Fourier coefficients c_n in m, n = 1 … k, (k, count): x″ = 2 Re Σ c_n e^{inφ}.
 
-    Samples are added until all orders in the upper half of those resolved vanish; a short rod needs more. book: of the
-    acceleration of first order. Raises UsageError for a rod with more orders than can be computed, L/R < 1.00000001.
+    Coefficients that are rounding are 0.
+
+    Samples are added until all orders in the upper half of those resolved vanish; a short rod needs more. book: take
+    the acceleration of first order instead of the exact one. Raises UsageError for a rod with more orders than can be computed, L/R < 1.00000001.
     """
     mechanism = throw.cylinder.mechanism
     samples = _SAMPLES
@@ -52,9 +54,9 @@ def orders_of(throw: CylinderThrow, book: bool, count: int) -> ComplexArray:
         rounding = _EPS * np.abs(values).max(axis=0)
         # cosines and sines each: an even function is without sines
         waves = unless_cancelled(waves, rounding, 1.0)
-        last = int(np.flatnonzero(waves.any(axis=1)).max(initial=0)) + 1
-        if last <= samples // 4:
-            return waves[:last]
+        order_count = int(np.flatnonzero(waves.any(axis=1)).max(initial=0)) + 1
+        if order_count <= samples // 4:
+            return waves[:order_count]
         samples *= 4
     raise UsageError(
         f"{throw.name}: the rod is so little longer than the crank that the orders of its forces do not converge"
@@ -147,11 +149,16 @@ class Unbalanced:
         # a moment needs the levers of all parts
         self.moment: ClosedCurve | None = None
         places = [part.place for part in parts if part.place is not None]
-        if len(places) == len(parts) and (z_0 is not None or not places):
-            self.moment = _summed(waves, [place - z_0 for place in places if z_0 is not None])
+        if not parts:
+            self.moment = _summed(waves, [])
+        elif len(places) == len(parts) and z_0 is not None:
+            self.moment = _summed(waves, [place - z_0 for place in places])
         # orders are those of the waves forward and backward together
         sizes = np.abs(waves[:, :, 0]).max(axis=0)
-        sums = (sizes + sizes[::-1])[len(sizes) // 2 + 1 :]
+        middle = len(sizes) // 2
+        forward = sizes[middle + 1 :]
+        backward = sizes[:middle][::-1]
+        sums = forward + backward
         orders = tuple((np.flatnonzero(sums > _SHOWN * sums.max()) + 1).tolist())
         self.orders = orders[:_MOST]
         self.next_order = orders[_MOST] if len(orders) > _MOST else None

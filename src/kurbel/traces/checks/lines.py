@@ -7,7 +7,7 @@ import numpy as np
 
 from kurbel.traces.checks.doubt import Doubt, sense_key
 from kurbel.traces.correct import Exponent
-from kurbel.traces.lines import Best, Chamber, best_clearance, least
+from kurbel.traces.lines import Best, Chamber, best_log_clearance, least
 from kurbel.traces.reading import COMPRESSOR, ENGINES, FIRED, MOTORED, TraceReading, in_bar
 
 STRANGE = 8.0
@@ -124,7 +124,7 @@ def _looks_of(
     misfit = chamber.misfit(reading.gas, clearance, later) + peak_misfit(reading, later)
     error = 2 * math.hypot(lines.compression.error, lines.expansion.error)
     most = _APART_FIRED if reading.kind == FIRED else _APART
-    is_beyond = not -_APART - error <= lines.apart <= most + error
+    is_beyond = not -_APART - error <= lines.difference <= most + error
     return Looks(
         misfit=misfit,
         is_strange=misfit > STRANGE,
@@ -289,7 +289,7 @@ def _with_dead_centre(reading: TraceReading) -> Cure | None:
 
 def _with_clearance(reading: TraceReading, chamber: Chamber, clearance: float) -> Cure:
     """Return the cure of a wrong clearance."""
-    best = best_clearance(chamber, reading.gas)
+    best = best_log_clearance(chamber, reading.gas)
     likely = math.exp(best.value)
     key = f"compression_ratio: {1 + 1 / likely:.3g}"
     if reading.kind == COMPRESSOR:
