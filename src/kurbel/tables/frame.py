@@ -522,7 +522,9 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     )
     if name in declared:
         others = f", which has {listed}" if listed else ""
-        return f"'{name}' is left out for this machine{others}"
+        needs = declared[name].needs
+        lacks = f"; it needs {needs}" if needs else ""
+        return f"'{name}' is left out for this machine{others}{lacks}"
     key_values = called(name, every_quantity().key_values(command).values())
     if key_values:
         return f"'{name}' is a key value and no column; --key-values {key_values[0]} prints it"
