@@ -68,6 +68,7 @@ class Quantity(NamedTuple):
     `of_book`: an approximation of the books, which people are shown where approximations are requested.
     `for_entry`: people write it into the machine file again, so that it is printed with more digits.
     `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
+    `needs`: what a machine without it lacks, for the message to who requests it.
     """
 
     id: str
@@ -90,6 +91,7 @@ class Quantity(NamedTuple):
     group: str = ""
     heading: str = ""
     of_book: bool = False
+    needs: str = ""
 
     @property
     def short(self) -> str:

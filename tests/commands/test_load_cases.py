@@ -118,3 +118,29 @@ def test_a_sweep_has_a_row_for_each_case(pump: Path) -> None:
     assert rows[2][-1].startswith("rod: 300 mm is shorter than the crank (400 mm)")
     for row in (1, 3):
         assert float(rows[row][3]) == pytest.approx(1.6 * float(rows[row + 3][3]), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("pressures", "status"),
+    [(("5 bara", "5 barg"), 2), (("5 bara", "6 bara"), 0), (("5 bar", "6 barg"), 0)],
+)
+def test_one_column_has_pressures_from_one_zero(
+    tmp_path: Path, pressures: tuple[str, str], status: int
+) -> None:
+    """5 bar absolute and 5 bar gauge, 1.01 bar apart, would both be 5 in one column."""
+    sets = [f"{{name: {p}, set: {{indicator.head_end: {p}}}}}" for p in pressures]
+    file = tmp_path / "machine.yaml"
+    file.write_text(
+        "speed: 50 rpm\nstroke: 300 mm\nrod_ratio: 4\nbore: 200 mm\n"
+        f"indicator: {{head_end: 3 bar}}\ncases: [{', '.join(sets)}]\n"
+    )
+    result = run("sweep", file, "--cases", "--columns", "p_max")
+    assert result.exit_code == status
+    assert ("from one zero" in result.stderr) == (status == 2)
+
+
+def test_a_condition_that_holds_nowhere_hides_no_column(pump: Path) -> None:
+    """The crosshead goes 800 mm: x = 1 km has no solution, and the column x is there all the same."""
+    result = run("motion", pump, "--columns", "x", "--where", "x = 1 km")
+    assert result.exit_code == 3
+    assert "x is nowhere 1000 m: it goes from 0 mm to 800 mm" in result.stderr

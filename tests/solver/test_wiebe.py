@@ -267,6 +267,14 @@ def test_work_that_is_not_of_the_fuel_is_doubted() -> None:
     ]
 
 
+def test_heat_in_the_units_of_heat() -> None:
+    """1 kcal is 4186.8 J (International Table); 1 Btu heats 1 lb by 1 °F, 4186.8 · 0.45359237/1.8 J = 1055.05585262 J."""
+    keys = "compression_ratio: 10, start: 0 deg, duration: 50 deg, heat: "
+    for heat, joules in (("0.25 kcal", 1046.7), ("1 Btu", 1055.05585262)):
+        released = forces_of(text(keys + heat))["heat_released"].value
+        assert released == pytest.approx(joules * (1 - math.exp(-5)), rel=1e-13)
+
+
 def test_both_ends_and_an_offset_crank() -> None:
     """Each end from its own dead centre, with its own heat, volume and strokes: the first law holds in both."""
     head = (

@@ -106,7 +106,14 @@ KINDS = {
         "1200 N m",
     ),
     "energy": Kind(
-        0, 1e18, f"J, kJ, MJ; {_TORQUES}; Nm", "J", ("J", "kJ", "MJ"), "kgf m", "lbf ft", "20 kJ"
+        0,
+        1e18,
+        f"J, kJ, MJ; {_TORQUES}; Nm, kcal, Btu",
+        "J",
+        ("J", "kJ", "MJ"),
+        "kgf m",
+        "lbf ft",
+        "20 kJ",
     ),
     "power": Kind(
         0, 1e18, "W, kW, MW, PS, hp, kgf m/s", "W", ("W", "kW", "MW"), "PS", "hp", "25 kW"

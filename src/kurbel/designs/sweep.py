@@ -23,7 +23,8 @@ from kurbel.designs.binding import KeyColumn, numbers_of
 from kurbel.designs.plan import Input, Plan
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.overrides import case_names
+from kurbel.machine_file.overrides import case_names, tree_of
+from kurbel.machine_file.zeros import references_of
 from kurbel.solver.case import Case
 from kurbel.tables.tables import grouped, joined_names
 
@@ -56,12 +57,32 @@ class Spec(NamedTuple):
     start: tuple[str, ...] = ()
 
 
+def _comparable_cases(origin: Origin) -> tuple[str, ...]:
+    """Return the names of the load cases of a file; raises UsageError where their pressures count from several zeros.
+
+    One column would have absolute and gauge pressures below each other.
+    """
+    names = case_names(origin)
+    case_of_zeros: dict[str, str] = {}
+    for name in names:
+        zeros: set[str] = set()
+        with suppress(KurbelError):  # a faulty case says so in its row
+            zeros = references_of(tree_of(origin._replace(case=name)))
+        # cylinders may differ, each in columns of its own
+        if zeros:
+            case_of_zeros.setdefault(" or ".join(sorted(zeros)), name)
+    if len(case_of_zeros) > 1:
+        listed = " and ".join(f"{zeros} in '{name}'" for zeros, name in case_of_zeros.items())
+        raise UsageError(f"--cases: pressures are {listed}; write those of all cases from one zero")
+    return names
+
+
 class Sweep:
     """The rows of one machine file. Raises UsageError for options that define no sweep."""
 
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
-        cases = [(Input("case", case_names(spec.origin)),)] if spec.cases else []
+        cases = [(Input("case", _comparable_cases(spec.origin)),)] if spec.cases else []
         self.plan = Plan([*cases, *spec.axes], spec.side_by_side, spec.sample, spec.seed, spec.most)
         self.rows = self.plan.rows
         starts: Iterable[int] = range(self.rows)

@@ -39,7 +39,7 @@ def without_zeros(tree: dict[str, Node], reading: Reading) -> dict[str, Any]:
         if key in _READ_ELSEWHERE:
             mapping[key] = node
         elif key in _BY_QUANTITY:
-            mapping[key] = _figures_without_zeros(node, reading, key, _references(tree))
+            mapping[key] = _figures_without_zeros(node, reading, key, references_of(tree))
         else:
             mapping[key] = _without_zeros(node, reading, (key,), _REFERENCES.get(key, ""))
     return mapping
@@ -67,7 +67,7 @@ def _reference(indicator: dict[str, Node]) -> str:
     return "absolute" if written == "absolute" else "gauge"
 
 
-def _references(tree: Node) -> set[str]:
+def references_of(tree: Node) -> set[str]:
     """Return what the pressures of all indicators of a file count from."""
     references: set[str] = set()
     items: list[Node] = []
@@ -80,7 +80,7 @@ def _references(tree: Node) -> set[str]:
     elif isinstance(tree, list):
         items = tree
     for item in items:
-        references |= _references(item)
+        references |= references_of(item)
     return references
 
 

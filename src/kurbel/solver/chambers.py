@@ -69,6 +69,11 @@ def _opening(state: Chambers, end: str) -> Number | None:
     return crank.opening_at(-w)
 
 
+_NEEDED_FOR_HEAT = (
+    "a 'wiebe' combustion, or a trace with 'heat: {exponent: 1.34}' and a 'clearance' or volumes"
+)
+
+
 class Chambers(MotionColumns):
     """Motion and gas forces of a cylinder at crank angles; see `MotionColumns`."""
 
@@ -145,6 +150,7 @@ class Chambers(MotionColumns):
         "Heat released per degree of crank angle, over 1 deg, less what the walls take",
         lambda state: _own_heat(state, HeatOfEnd.rate),
         on_request=("forces",),
+        needs=_NEEDED_FOR_HEAT,
     )
     x_b = value(
         "x_b",
@@ -152,6 +158,7 @@ class Chambers(MotionColumns):
         "Burnt share: heat released so far over all that is released",
         lambda state: _own_heat(state, HeatOfEnd.burnt),
         on_request=("forces",),
+        needs=_NEEDED_FOR_HEAT,
     )
     P_gas = value(
         "P_gas",

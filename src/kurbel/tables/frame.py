@@ -248,14 +248,15 @@ def _with_rows(frame: Frame, subjects: Iterable[Subject]) -> list[_Rows]:
 
 def _check_columns(frame: Frame, with_rows: Sequence[_Rows], ids: set[str]) -> None:
     """Refuse a requested column that no subject has, and a condition that holds nowhere; ids: of all columns."""
-    for name in frame.columns or ():
-        if name not in ids:
-            absent = _absent(name, frame.command, [rows.subject for rows in with_rows])
-            raise UsageError(f"--columns: {absent}")
+    # without any row no column shows whether the machine has it
     if not ids:
         for rows in with_rows:
             if rows.nowhere:
                 raise NoSolutionError(rows.nowhere)
+    for name in frame.columns or ():
+        if name not in ids:
+            absent = _absent(name, frame.command, [rows.subject for rows in with_rows])
+            raise UsageError(f"--columns: {absent}")
 
 
 def _part(rows: _Rows, frame: Frame, with_values: bool) -> Part:
@@ -521,7 +522,9 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     )
     if name in declared:
         others = f", which has {listed}" if listed else ""
-        return f"'{name}' is left out for this machine{others}"
+        needs = declared[name].needs
+        lacks = f"; it needs {needs}" if needs else ""
+        return f"'{name}' is left out for this machine{others}{lacks}"
     key_values = called(name, every_quantity().key_values(command).values())
     if key_values:
         return f"'{name}' is a key value and no column; --key-values {key_values[0]} prints it"
