@@ -84,8 +84,8 @@ def without_workers_it_is_waited_for(cluster: Cluster) -> None:
 
 
 def in_the_midst(cluster: Cluster, file: Path) -> subprocess.Popen[str]:
-    """Return a sweep of 15,001 rows that has written some."""
-    words = [*SWEEP, "rod_ratio=3:6:0.0002", "--dask", cluster.address, "-o", str(file)]
+    """Return a sweep of 6,001 rows that has written some."""
+    words = [*SWEEP, "rod_ratio=3:6:0.0005", "--dask", cluster.address, "-o", str(file)]
     process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
     until_written(process, file.with_name("rows.csv.part"), 1000)
     return process
@@ -96,10 +96,10 @@ def a_killed_worker_loses_no_row(cluster: Cluster, file: Path) -> None:
     os.kill(cluster.processes[1].pid, signal.SIGKILL)
     assert (process.communicate(timeout=300)[1], process.returncode) == ("", 0)
     alone = subprocess.run(
-        [*SWEEP, "rod_ratio=3:6:0.0002", "-f", "csv"], capture_output=True, check=True
+        [*SWEEP, "rod_ratio=3:6:0.0005", "-f", "csv"], capture_output=True, check=True
     ).stdout
     assert file.read_bytes() == alone
-    assert alone.count(b"\n") == 15_002
+    assert alone.count(b"\n") == 6_002
 
 
 def a_killed_scheduler_is_named_and_resume_goes_on(cluster: Cluster, file: Path) -> None:
