@@ -449,7 +449,7 @@ def test_differences_of_temperatures_are_reported_without_a_zero() -> None:
 
 
 def test_each_cylinder_has_its_own_uncertainties() -> None:
-    """A = π D²/4, u_A = π D u_D/2; a negative force in kN as its size wants it; shares in percent."""
+    """A = π D²/4, u_A = π D u_D/2; P = −m R ω² (1 + λ); shares in percent."""
     cylinder = "stroke: 200 mm, rod: 500 mm, masses: {reciprocating: 20 kg}"
     pressures = "indicator: {head_end: {constant: {expansion: 6 bar, compression: 0 bar}}}"
     text = f"""
@@ -485,3 +485,10 @@ def test_shares_in_percent_have_one_decimal() -> None:
     assert row_of(table, "b_max")[1][2:] == [percent, 100 - percent, None]
     _, (value, size, *_) = row_of(table, "b_max")
     assert size / value == pytest.approx(0.01 * hypot(2, 0.2 / 1.2), rel=1e-6)
+
+
+def test_the_size_of_a_negative_value_decides_its_unit() -> None:
+    quantity = every_quantity().key_values("forces")["P_inertia_min"]
+    result = Uncertain(Answer(quantity, "forces", "a"), -11300.0, 200.0, (1.0,))
+    part = uncertainty._with_table(Part("a", ()), [result], ("speed",), "metric")
+    assert row_of(part.place_tables[0], "P_inertia_min") == ("kN", [-11.3, 0.2, 100.0, None])
