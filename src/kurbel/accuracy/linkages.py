@@ -252,9 +252,11 @@ class LinkMotion:
         self._angle = mpf(mechanism.angle)
         self._length = mpf(mechanism.length)
         self._offset = mpf(mechanism.own_offset)
+        # x is from the shaft until the dead centres are known
         self._top = mpf(0)
         self.knuckle_at = cache(self._knuckle_at)
         self.ends = dead_centres(self)
+        # from here on it is from the inner one
         self._top = -self.at(self.ends[0]).x
         self.stroke = self.at(self.ends[1]).x
 

@@ -123,6 +123,7 @@ class Sweep:
         of_single_cylinder = any(re.match(r"cylinders\W*\d", key) for key in self._keys)
         if self.spec.cases or of_single_cylinder:
             return heads
+        # by name: the first of identical cylinders, or the cylinder itself
         originals = {
             cylinder.drive.name: cylinder.twin or cylinder
             for cylinder in Case(self._study.binder.machine).cylinders
@@ -130,6 +131,7 @@ class Sweep:
         answers = self._study.answers
 
         def content(index: int) -> Hashable:
+            """Return what is equal for columns that become one; the index itself for one that stays alone."""
             answer = answers[index]
             value = self._study.first[index]
             what, _, owner = answer.subject.rpartition(" of ")
@@ -137,10 +139,10 @@ class Sweep:
                 return index
             return what, originals[owner], answer.quantity.id, answer.angle, f"{value:.9g}"
 
-        count = len(self._keys)
-        shown = heads[:count]
+        input_count = len(self._keys)
+        shown = heads[:input_count]
         for group in grouped(range(len(answers)), content):
-            name, column = heads[count + group[0]]
+            name, column = heads[input_count + group[0]]
             if len(group) > 1:
                 owners = joined_names([answers[index].subject for index in group])
                 name = f"{owners}.{name.rpartition('.')[2]}"

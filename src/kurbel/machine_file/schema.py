@@ -242,9 +242,13 @@ def describe(
 def _describe_inline(
     form: Inline, properties: Schema, rules: list[Schema], definitions: Schema
 ) -> None:
-    """Add the keys of an inline record, which are required if one of them is present, or forbidden by its list."""
+    """Add the keys of an inline record.
+
+    If any of them is given, those that it demands must be given; if the list `form.unless` is given, all are forbidden.
+    """
     before = set(properties)
     describe(form, properties, rules, definitions)
+    # each in a group of its own
     added = [[name] for name in properties if name not in before]
     demands = _demands(form)
     if demands:

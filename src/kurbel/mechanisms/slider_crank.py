@@ -397,15 +397,22 @@ class SliderCrank(Mechanism):
         From the triangle shaft, pin, crosshead by half angles, accurate near the dead centres. In closed form, since
         every point of a card over the stroke needs it, and a search takes fifty times as long.
         """
-        lam, passed, stroke = self.lam, displacement / self.crank, self.stroke / self.crank
-        eps, (outer, inner) = self.offset / self.rod, self._reaches
-        distance = outer - lam * passed  # of the crosshead from the foot of the shaft axis, over L
+        # x and stroke over R; lengths from here on over L
+        lam = self.lam
+        passed = displacement / self.crank
+        stroke = self.stroke / self.crank
+        eps = self.offset / self.rod
+        at_inner, at_outer = self._reaches
+        # the crosshead from the foot of the shaft axis, and from the shaft
+        distance = at_inner - lam * passed
         line = np.hypot(distance, eps)
-        # over λ: L + R − line, and line + R − L, from differences of squares
-        before = passed * (2 * outer - lam * passed) / (1 + lam + line)
-        after = (stroke - passed) * (distance + inner) / (line + 1 - lam)
+        # (1 + λ − line)/λ and (line + λ − 1)/λ, each from a difference of squares
+        before = passed * (2 * at_inner - lam * passed) / (1 + lam + line)
+        after = (stroke - passed) * (distance + at_outer) / (line + 1 - lam)
+        # half the angle at the shaft, by its tangent
         half = np.arctan2(np.sqrt(before * (1 + line - lam)), np.sqrt(after * (line + lam + 1)))
-        lead, sweep = np.degrees(np.arctan2(eps, distance)), np.degrees(2 * half)
+        lead = np.degrees(np.arctan2(eps, distance))
+        sweep = np.degrees(2 * half)
         if outstroke:
             return lead + sweep
         return 360.0 + lead - sweep

@@ -228,11 +228,14 @@ class SlottedLever(Mechanism):
         kappa, root = self._kappa
         if not self.rotates:
             return (-kappa, root), (kappa, root)
-        short, height = self._end / self.link, self._height / self.link
-        folded, stretched = -height / (1 - short), height / (1 + short)
+        # in line (R_l ∓ l) cos θ = h; both over l
+        short = self._end / self.link
+        height = self._height / self.link
+        cos_folded = -height / (1 - short)
+        cos_stretched = height / (1 + short)
         return (
-            (-math.sqrt((1 - folded) * (1 + folded)), folded),
-            (math.sqrt((1 - stretched) * (1 + stretched)), stretched),
+            (-math.sqrt((1 - cos_folded) * (1 + cos_folded)), cos_folded),
+            (math.sqrt((1 - cos_stretched) * (1 + cos_stretched)), cos_stretched),
         )
 
     def dead_centres(self) -> tuple[float, float]:

@@ -18,7 +18,7 @@ _LEAST = 1e-17
 def accuracy_picture(report: Report) -> Picture:
     """Return a panel for each quantity of an accuracy report, and one for ω in each scene of the speed.
 
-    A curve is a method, in the former of one scene. Raises UsageError where nothing was compared.
+    A curve is one method, in the panel of a quantity in one scene. Raises UsageError where nothing was compared.
     """
     methods: dict[str, int] = {}
     curves: dict[str, list[Curve]] = {}

@@ -141,9 +141,9 @@ def write_rows(
     headed: bool = True,
     written_before: WrittenRows = NOTHING_WRITTEN,
 ) -> None:
-    """Write the rows; a reader that leaves early is no fault. Raises UsageError.
+    """Write the rows; a reader that leaves early is no fault, as `opened` sees to. Raises UsageError.
 
-    headed: csv with its head; early: gets a sentence about what an early end leaves.
+    headed: csv with its head; early: called with a sentence about what an early end leaves.
     """
     look = look_at(file_name, look)
     if look.format == "xlsx":

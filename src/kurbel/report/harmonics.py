@@ -47,7 +47,7 @@ def _harmonics(
     orders: Sequence[float] | None = None,
     speeds: Sequence[float] | None = None,
 ) -> tuple[list[Subject], Iterator[str]]:
-    """Return the orders of the turning effort; orders: those to show, None for all up to 24.
+    """Return the subjects with the orders of the turning effort, and the notes; orders: those to show, None for all up to 24.
 
     speeds: in revolutions per second, at which the orders of the whole machine are shown, too. Raises UsageError if
     nothing turns the shaft.
@@ -65,13 +65,17 @@ def _harmonics(
         cylinders.append(
             Subject(drive.name, left_out=reasons, tables=_orders_of_cylinder(cylinder))
         )
-    why = ""
+    why_not_apart = ""
     if harmonics.machine.inertia is None:
-        why = "no masses, or no speed given" if cylinders else "the effort is given as a torque"
+        why_not_apart = (
+            "no masses, or no speed given" if cylinders else "the effort is given as a torque"
+        )
     machine_subject = Subject(
         "whole machine",
         harmonics,
-        left_out=chain(flywheel_left_out(machine), missing({"gas and inertia apart": why})),
+        left_out=chain(
+            flywheel_left_out(machine), missing({"gas and inertia apart": why_not_apart})
+        ),
         warnings=of_machine(case),
         tables=_orders_of_machine(harmonics, speeds or (), machine.speed),
         whole=True,

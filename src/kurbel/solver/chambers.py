@@ -210,17 +210,15 @@ class Chambers(MotionColumns):
         """Force in N on each piston that has an indicator."""
         return [self.force_on(gas) for gas in self.drive.gas]
 
-    def force_of(self, shares: Sequence[Truth]) -> Array | None:
-        """Return the gas force in N on those pistons whose share is true, in each machine; None without any."""
-        forces_and_shares = zip(self.piston_forces, shares)
-        counted = [
-            force * spread(share, self.drive.index)
-            for force, share in forces_and_shares
-            if share is not False
-        ]
-        if not counted:
+    def force_of(self, chosen: Sequence[Truth]) -> Array | None:
+        """Return the sum of the gas forces in N on the pistons that are chosen, in each machine; None if none is."""
+        forces = []
+        for force, is_chosen in zip(self.piston_forces, chosen):
+            if is_chosen is not False:
+                forces.append(force * spread(is_chosen, self.drive.index))
+        if not forces:
             return None
-        return sum(counted)
+        return sum(forces)
 
     P_driving = value(
         "P_gas+",

@@ -215,21 +215,23 @@ def _value(subject: Subject, command: str, column: Quantity, condition: Conditio
         if factor and column.kind != "ratio":
             example = kind_example(column.kind)
             raise UsageError(f"--where: {condition.text} has no unit; write for instance {example}")
+        # zero needs no unit
         return factor or 0.0
     try:
-        up, down = unit_factor(of, column.kind)
+        numerator, denominator = unit_factor(of, column.kind)
     except UnitError as error:
-        no_unit = error
+        # reported below if it is no key value either
+        why_no_unit = error
     else:
         if factor is None:
             raise UsageError(
                 f"--where: {text_in_one_line(of)} has no number before the unit; "
                 f"write {kind_example(column.kind)}"
             )
-        wrong_zero = column.kind == "pressure" and other_zero(of, column.zero, column.id)
-        if wrong_zero:
-            raise UsageError(f"--where: {wrong_zero}")
-        return (factor + zero_of(of)) * up / down
+        zero_fault = column.kind == "pressure" and other_zero(of, column.zero, column.id)
+        if zero_fault:
+            raise UsageError(f"--where: {zero_fault}")
+        return (factor + zero_of(of)) * numerator / denominator
 
     # no unit, so it must be a key value of the column's kind
     declared = subject.lists.key_values(command).items()
@@ -238,7 +240,7 @@ def _value(subject: Subject, command: str, column: Quantity, condition: Conditio
     if not ids:
         single = ", ".join(id for id, quantity in candidates.items() if not quantity.listed)
         raise UsageError(
-            f"--where: '{of}' is neither a unit nor a key value of this kind: {no_unit}; key values: {single}"
+            f"--where: '{of}' is neither a unit nor a key value of this kind: {why_no_unit}; key values: {single}"
         )
     value = number_of(subject.answer(candidates[ids[0]]))
     if not isinstance(value, float):

@@ -72,7 +72,8 @@ def _passes(
 ) -> float:
     """Return the angle on a stroke nearest the middle of a flank at which the pressure passes a level.
 
-    Where it does not, the end of the stroke on the side of the level.
+    after: degrees after the dead centre, rising. Where it does not, the end of the stroke that is nearest to the level:
+    the pressure rises on the return stroke, before 0°, and falls after it.
     """
     middle = (flank.begin + flank.end) / 2
     grid = np.linspace(stroke[0], stroke[1], 721)
@@ -82,6 +83,7 @@ def _passes(
     if not len(changes):
         is_rise = stroke[0] < 0
         is_low = bool(pressures.max() < level)
+        # too low on a rise, or too high on a fall: it would pass after the end
         return stroke[1] if is_low == is_rise else stroke[0]
     share = (level - pressures[changes]) / (pressures[changes + 1] - pressures[changes])
     angles = grid[changes] + share * (grid[1] - grid[0])
