@@ -335,7 +335,7 @@ def test_failed_machines_have_no_part_in_spread_and_shares(formulas: Formulas) -
     """Of a small sample, against the standard deviation (of n − 1) and the correlations of those that are good."""
 
     def formula(a: float, b: float) -> tuple[float, ...] | str:
-        return "too far" if a > 0.5 else (a**2 + b + 40,)
+        return f"{a} is too far" if a > 0.5 else (a**2 + b + 40,)
 
     (result,) = formulas.of(formula, sample=24)
     good = [(a, b) for a, b in formulas.sampled if a <= 0.5]
@@ -343,7 +343,9 @@ def test_failed_machines_have_no_part_in_spread_and_shares(formulas: Formulas) -
     lost = 24 - len(good)
     assert lost == pytest.approx(24 * (1 - NormalDist().cdf(0.5)), abs=1)
     assert (result.value, result.sample) == (40, len(good))
-    assert result.failed == f"{lost} of 24 sampled machines fail and are ignored (too far)."
+    first = next(a for a, _ in formulas.sampled if a > 0.5)
+    reason = f"({first} is too far)"
+    assert result.failed == f"{lost} of 24 sampled machines fail and are ignored {reason}."
     assert result.spread == pytest.approx(stdev(results), rel=1e-12)
     shares = [correlation(values, results) ** 2 for values in zip(*good)]
     assert result.shares == pytest.approx(shares, rel=1e-9)
@@ -395,6 +397,7 @@ def test_a_sample_is_stratified() -> None:
     for column in strips.T:
         assert sorted(column) == list(range(200))
     assert abs(np.corrcoef(numbers.T) - np.eye(3)).max() < 4 / sqrt(200)
+    assert abs(np.corrcoef(within.T) - np.eye(3)).max() < 4 / sqrt(200)
     assert within.mean() == pytest.approx(1 / 2, abs=4 / sqrt(12 * 600))
     assert within.std() == pytest.approx(sqrt(1 / 12), rel=0.1)
     assert not (latin_hypercube(200, 3, 6) == numbers).any()
@@ -460,6 +463,8 @@ cylinders:
 """
     spreads = [("cylinders.0.bore", "1 mm"), ("cylinders.1.bore", "3 mm"), ("speed", "1 %")]
     tables = tables_of(text, "forces", spreads, "metric")
+    # a part without an uncertain key value has no table
+    assert [*tables_of(text, "forces", spreads[:1], "metric")] == ["a"]
     by_name = {"a": (15.0, 0.1, [100, 0, 0]), "b": (30.0, 0.3, [0, 100, 0])}
     for name, (bore, size, percent) in by_name.items():
         unit, numbers = row_of(tables[name], "A_head")
