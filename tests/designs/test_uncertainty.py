@@ -464,7 +464,7 @@ cylinders:
     spreads = [("cylinders.0.bore", "1 mm"), ("cylinders.1.bore", "3 mm"), ("speed", "1 %")]
     tables = tables_of(text, "forces", spreads, "metric")
     # a part without an uncertain key value has no table
-    assert [*tables_of(text, "forces", spreads[:1], "metric")] == ["a"]
+    assert "b" not in tables_of(text, "forces", spreads[:1], "metric")
     by_name = {"a": (15.0, 0.1, [100, 0, 0]), "b": (30.0, 0.3, [0, 100, 0])}
     for name, (bore, size, percent) in by_name.items():
         unit, numbers = row_of(tables[name], "A_head")
