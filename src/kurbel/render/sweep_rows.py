@@ -177,19 +177,28 @@ def write_rows(
             _write_lines(file, chain(heads, map(row_line, all_rows)), look.encoding)
     except BaseException:
         if count:
-            _report_what_is_left(count, file_name, early)
+            _report_what_is_left(count, file_name, look, early)
         raise
 
 
-def _report_what_is_left(count: int, file_name: str | None, early: Callable[[str], None]) -> None:
-    """Say how many rows an early end leaves, and where."""
-    rows = "1 row" if count == 1 else f"{count} rows"
+def _report_what_is_left(
+    count: int, file_name: str | None, look: Look, early: Callable[[str], None]
+) -> None:
+    """Say how many rows an early end leaves, and where; count: of those known to be written."""
     if file_name is None or file_name == "-":
-        early(f"{rows} written")
+        early(f"{_rows_in_words(count)} written")
         return
     part = _part_of(file_name)
     if os.path.isfile(part):
-        early(f"{part} holds {rows}")
+        # by the file: an interrupt may come between the writing of a row and its counting
+        with open(part, "rb") as file:
+            lines = sum(1 for _ in file)
+        count = lines - 1 if look.format == "csv" else lines
+        early(f"{part} holds {_rows_in_words(count)}")
+
+
+def _rows_in_words(count: int) -> str:
+    return "1 row" if count == 1 else f"{count} rows"
 
 
 def _part_of(file_name: str) -> str:
