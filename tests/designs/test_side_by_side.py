@@ -9,6 +9,7 @@ from zlib import crc32
 import numpy as np
 import pytest
 
+import kurbel
 from kurbel import sweep
 from kurbel.machine_file.source import read
 from representative import SHIPPED, few
@@ -148,3 +149,27 @@ def test_a_crosshead_that_locks_itself_has_no_forces_among_others() -> None:
     )
     assert ["locks itself" in why for why in result["failure"]] == [True, True, True, False, False]
     assert np.isnan(result["S_max"]).tolist() == [True, True, True, False, False]
+
+
+@pytest.mark.parametrize(
+    "mechanism",
+    [
+        "mechanism: slotted-lever, frame: 800 mm, lever: 1300 mm",
+        "mechanism: four-bar, coupler: 900 mm, rocker: 600 mm, frame: 800 mm",
+    ],
+)
+def test_lengths_of_one_of_several_mechanisms_vary(mechanism: str) -> None:
+    """The dead centres of these have formulas for a single machine: each row is that of its machine alone."""
+    acting = "ram_force: {work: 6 kN, return: 0.6 kN}"
+    if "four-bar" in mechanism:
+        acting = "moment: {work: 900 N m, return: 200 N m}"
+    text = (
+        "kurbel: 1\nspeed: 40 rpm\ncylinders:\n"
+        f"  - {{{mechanism}, crank: 300 mm, {acting}}}\n"
+        f"  - {{{mechanism}, crank: 300 mm, {acting}, crank_position: 90 deg}}\n"
+    )
+    key = "cylinders.0.crank"
+    swept = kurbel.sweep(kurbel.loads(text), {key: ["250 mm", "280 mm", "290 mm"]}, "M_max")
+    for row, crank in enumerate(["250 mm", "280 mm", "290 mm"]):
+        alone = kurbel.sweep(kurbel.loads(text), {key: [crank]}, "M_max")
+        assert swept["M_max"][row] == alone["M_max"][0]

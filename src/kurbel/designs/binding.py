@@ -195,6 +195,7 @@ class Binder:
                 machine = maker.made(self._root)
             if maker.reading.faults or not are_within.any():
                 return [], rows
+            groups = _with_same_branches(machine, np.flatnonzero(~maker.broken))
         # a formula that works for a single machine only: these rows are read one by one
         except (
             KurbelError,
@@ -209,7 +210,7 @@ class Binder:
 
         rows_read = rows[are_within]
         batches = []
-        for alike in _with_same_branches(machine, np.flatnonzero(~maker.broken)):
+        for alike in groups:
             # a value that all machines have in common becomes a number
             batch = changed(machine, lambda values, alike=alike: _column(values[alike]))  # type: ignore[misc]
             batches.append(Batch(batch, rows_read[alike].tolist()))
