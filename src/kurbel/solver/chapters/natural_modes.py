@@ -125,11 +125,28 @@ class _Quotients:
         fixed = list(chain.from_iterable(tree.fixed))
         return bars.nodes(segments, self.ratios[linked]) + bars.nodes_from_ground(fixed)
 
+    def fill_branches(self, angles: Array, torques: _Torques, on_path: set[int]) -> None:
+        """Fill in the angles (n,) of masses off a path to the root, and the torques, outward from it; of one ω.
+
+        The angles of the masses on the path are those already there.
+        """
+        tree, bars = self._tree, self._bars
+        for mass in reversed(tree.leaves_first):
+            link = tree.links[mass]
+            if mass not in on_path and link is not None:
+                angles[mass] = angles[link.parent] / not_zero(self.ratios[mass])[0]
+                at_mass = self.at[mass][0] * angles[mass]
+                _, at_parent = bars.onward(link.segment, angles[mass], at_mass)
+                torques.set(link, at_mass, float(at_parent[0]))
+            for segment in tree.fixed[mass]:
+                torques.set_fixed(segment, bars, angles[mass])
+
 
 class _Torques:
     """The torques at both ends of the segments of a chain, filled in segment by segment; as in `Holzer`."""
 
     def __init__(self, chain: Chain) -> None:
+        self._joins = chain.joins
         self.before, self.behind = np.zeros((2, len(chain.joins)))
 
     def set(self, link: RootwardSegment, at_mass: float, at_parent: float) -> None:
@@ -139,12 +156,12 @@ class _Torques:
         else:
             self.before[link.segment], self.behind[link.segment] = -at_parent, -at_mass
 
-    def set_fixed(self, chain: Chain, segment: int, bars: _Bars, angle: float) -> None:
+    def set_fixed(self, segment: int, bars: _Bars, angle: float) -> None:
         """Take the torques in a segment between a fixed end and a mass at this angle, away from the root."""
         from_ground = float(bars.from_ground(segment)[0]) * angle
         # read from the mass to the ground
         _, at_ground = bars.onward(segment, angle, -from_ground)
-        mass_is_before = chain.joins[segment][1] == GROUNDED
+        mass_is_before = self._joins[segment][1] == GROUNDED
         self.set(
             RootwardSegment(segment, GROUNDED, mass_is_before), -from_ground, float(at_ground[0])
         )
@@ -184,16 +201,7 @@ def holzer_at(chain: Chain, omega: float) -> Holzer:
         left = angle
 
     # from there outward into the branches
-    for mass in reversed(tree.leaves_first):
-        link = tree.links[mass]
-        if mass not in on_path and link is not None:
-            angles[mass] = angles[link.parent] / not_zero(quotients.ratios[mass])[0]
-            at_mass = quotients.at[mass][0] * angles[mass]
-            torques.set(
-                link, at_mass, float(bars.onward(link.segment, angles[mass], at_mass)[1][0])
-            )
-        for segment in tree.fixed[mass]:
-            torques.set_fixed(chain, segment, bars, angles[mass])
+    quotients.fill_branches(angles, torques, on_path)
     return Holzer(angles, torques.before, torques.behind, left)
 
 
@@ -311,22 +319,13 @@ class Modes:
             if link is None:
                 break
             if link.parent == GROUNDED:
-                torques.set_fixed(chain, link.segment, bars, angles[mass])
+                torques.set_fixed(link.segment, bars, angles[mass])
                 break
             ratio, torque = bars.onward(link.segment, 1.0, of_rest[mass])
             angles[link.parent] = angles[mass] / not_zero(ratio)[0]
             at_parent = -of_rest[mass][0] * angles[link.parent]
             torques.set(link, -float(torque[0]) * angles[link.parent], at_parent)
-        for mass in reversed(tree.leaves_first):
-            link = tree.links[mass]
-            if mass not in on_path and link is not None:
-                angles[mass] = angles[link.parent] / not_zero(inward.ratios[mass])[0]
-                at_mass = inward.at[mass][0] * angles[mass]
-                torques.set(
-                    link, at_mass, float(bars.onward(link.segment, angles[mass], at_mass)[1][0])
-                )
-            for segment in tree.fixed[mass]:
-                torques.set_fixed(chain, segment, bars, angles[mass])
+        inward.fill_branches(angles, torques, on_path)
 
         largest = float(np.abs((torques.before, torques.behind)).max(initial=0.0))
         residual = abs(float(gaps[meeting])) / max(largest, float(inward.own[meeting][0]), 1e-300)
