@@ -40,9 +40,8 @@ def sheet_text(raw: bytes, name: str, sheet: str | None, columns: int) -> str:
         return "\n".join(_lines(rows)) + "\n"
     except RuleError:
         raise
-    except (
-        Exception
-    ) as error:  # whatever damaged bytes do to the libraries that unpack and parse them
+    # whatever damaged bytes do to the libraries that unpack and parse them
+    except Exception as error:
         refused(f"{name} cannot be read as a workbook ({error}); export its table as CSV", "file")
 
 
