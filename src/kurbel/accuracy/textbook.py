@@ -311,7 +311,7 @@ class TextbookCylinder:
             drawing = drawn(card, lift, turns == 2, self._ambient, events)
             modulus = machine.pump.liquid.bulk_modulus if machine.pump else None
             if modulus is not None and len(drawing.lines) == 2:
-                clearance = mpf(getattr(card, "clearance", None) or 0.0)
+                clearance = mpf(card.clearance or 0.0)
                 drawing = of_liquid(drawing, clearance, mpf(modulus))
             strokes = 1 + max(line.stroke for line in drawing.lines)
             chambers.append(TextbookChamber(drawing, sign, area, strokes))

@@ -52,6 +52,8 @@ class Rectangle(StrokeCard):
     doubts: tuple[str, ...] = ()
 
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke", "four-stroke")
+    clearance: ClassVar[None] = None
+    """Lines of constant pressure need no clearance volume."""
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -435,7 +437,7 @@ _ONE_PRESSURE = NumberForm(
     becomes=lambda pressure, _: Rectangle(level=pressure),
 )
 Chamber = Union[Rectangle, Card, "IdealCard", "Wiebe", "Trace"]
-"""The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
+"""The pressure in one end of a cylinder; each has `cycles`, of which it can be part, `clearance`, and `rules_in`."""
 
 
 def levels_of_strokes(chamber: Chamber | None) -> list[Number] | None:

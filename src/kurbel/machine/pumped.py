@@ -200,9 +200,8 @@ class Pump(Record):
                     "and nothing is delivered"
                 )
                 numbers = {"K": self.liquid.bulk_modulus, "name": piston.name}
-                clearance = getattr(card, "clearance", None)
-                if clearance is not None:
+                if card.clearance is not None:
                     message = f"{message}; the clearance is {{c}} times the stroke volume"
-                    numbers["c"] = clearance
+                    numbers["c"] = card.clearance
                 path = ("pump", "liquid", "bulk_modulus")
                 yield Rule(path, fractions[1] <= 0, message, numbers)

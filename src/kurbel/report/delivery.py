@@ -151,7 +151,7 @@ def _assumed(machine: Machine, pump: Pump) -> Iterator[LeftOut]:
         reason = "no chamber has one pressure on each stroke, as `constant` gives"
         yield LeftOut("compression of the liquid", reason)
         return
-    if any(getattr(card, "clearance", None) is None for card in soft):
+    if any(card.clearance is None for card in soft):
         reason = "no clearance given with every `constant`, it is taken as 0"
         yield LeftOut("clearance of the chambers", reason)
     reason = "heads in pipes are those of valves that open in the dead centres"

@@ -461,7 +461,7 @@ class PistonGas:
         self.clearance_volumes: list[Number] = []
         chambers = (indicator.head_end, indicator.crank_end)
         for chamber, pressure, area in zip(chambers, (self.head, self.crank), self.areas):
-            clearance = getattr(chamber, "clearance", None)
+            clearance = chamber.clearance if chamber else None
             if pressure is not None and pressure.traced:  # by the smallest volume of a file, say
                 clearance = pressure.trace.clearance
             volume = 0.0 if clearance is None else clearance * area * self.stroke
